@@ -121,6 +121,12 @@ node_table! {
         WEAVE: bool = toggle("weave", "weave", false).solved("nucleus_core::constraints::weave").fixed().extension();
         /// Angle of the warp to u, counterclockwise about the normal of the face. At 90 the warp follows v, at 45 the cloth is cut on the bias.
         WEAVE_ANGLE: f64 = float("weaveAngle", "weaveAngle", 0.0).soft(-180.0, 180.0).unit("degrees").solved("nucleus_graph::compile::weave").fixed().extension();
+        /// Texture of the map of weave angle.
+        WEAVE_ANGLE_MAP: f64 = texture("weaveAngleMap", "weaveAngleMap", 1.0).solved("nucleus_graph::compile::weave").fixed().extension();
+        /// Factor on weave angle, per point. The warp of a face has the mean angle of its points.
+        WEAVE_ANGLE_PER_VERTEX: Vec<f64> = floats("weaveAnglePerVertex", "weaveAnglePerVertex").solved("nucleus_graph::compile::weave").fixed().extension();
+        /// Source of the map of weave angle: none, a value per point, or a texture.
+        WEAVE_ANGLE_MAP_TYPE: Choice = choice("weaveAngleMapType", "weaveAngleMapType", 2, MAP_TYPES).solved("nucleus_graph::compile::weave").fixed().extension();
         /// Membrane stiffness of woven cloth along the warp. Below 0: that of stretch.
         WARP_STIFFNESS: f64 = float("warpStiffness", "warpStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::weave").extension();
         /// Membrane stiffness of woven cloth along the weft. Below 0: that of stretch.

@@ -36,7 +36,7 @@ const BY_VOLUME_HELP: &str = "write `pressureMethod: volumeTrackingModel`";
 
 const WOVEN_HELP: &str = "write `weave: true`";
 
-static DEPENDENCIES: [Dependency; 20] = [
+static DEPENDENCIES: [Dependency; 24] = [
     needs(
         &n_cloth::PRESSURE.row,
         Need::Choice(&n_cloth::PRESSURE_METHOD, Some(MANUAL)),
@@ -105,6 +105,10 @@ static DEPENDENCIES: [Dependency; 20] = [
         "give `initialPerturbation`",
     ),
     needs(&n_cloth::WEAVE_ANGLE.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
+    needs(&n_cloth::WEAVE_ANGLE_MAP.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
+    needs(&n_cloth::WEAVE_ANGLE_MAP.row, Need::Number(&n_cloth::WEAVE_ANGLE), "give `weaveAngle`"),
+    needs(&n_cloth::WEAVE_ANGLE_PER_VERTEX.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
+    needs(&n_cloth::WEAVE_ANGLE_PER_VERTEX.row, Need::Number(&n_cloth::WEAVE_ANGLE), "give `weaveAngle`"),
     needs(&n_cloth::WARP_STIFFNESS.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
     needs(&n_cloth::WEFT_STIFFNESS.row, Need::On(&n_cloth::WEAVE), WOVEN_HELP),
     needs(&n_cloth::MINIMAL_STRETCH.row, Need::Classic, "it limits counts: write `resistanceModel: classic`"),

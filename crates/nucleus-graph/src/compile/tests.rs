@@ -127,6 +127,16 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
 }
 
 #[test]
+fn a_map_of_the_weave_angle_turns_the_warp_of_the_points_that_it_covers() {
+    let woven =
+        |angles: &str| model(&program(&sheet("", &format!("weave: true, shearStiffness: 50, {angles}"))));
+    assert_eq!(woven("weaveAngle: 90, weaveAnglePerVertex: [0.5, 0.5, 0.5, 0.5]"), woven("weaveAngle: 45"));
+    // The mean over the corners of the only face.
+    assert_eq!(woven("weaveAngle: 60, weaveAnglePerVertex: [1, 0, 1, 0]"), woven("weaveAngle: 30"));
+    assert_ne!(woven("weaveAngle: 30"), woven("weaveAngle: 45"));
+}
+
+#[test]
 fn there_is_no_air_list_in_a_vacuum() {
     assert!(model(&program(&sheet("airDensity: 0", ""))).contains("air: false"));
 }

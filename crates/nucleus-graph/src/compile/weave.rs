@@ -1,5 +1,7 @@
 //! Woven cloth (`weave`): the direction of its warp in each face, from texture coordinates.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 use nucleus_core::Surface;
 
@@ -8,72 +10,117 @@ use crate::attributes::{n_cloth, nucleus};
 use crate::graph::NodeId;
 
 use super::compiler::Compiler;
+use super::map_values::MapOfCloth;
 use super::texture_coordinates::{MeshCoordinates, of_mesh};
 use super::units::CLASSIC;
+use super::vertex_maps::WEAVE_ANGLE;
 
 impl Compiler<'_> {
     /// The direction of the warp in each face of a cloth at rest: that of rising u, turned by `weaveAngle`. Empty for cloth
     /// that is not woven, `None` after an error, which is reported.
     pub(super) fn warp(&mut self, cloth: NodeId, mesh: NodeId, rest: &Surface) -> Option<Vec<Vector3<f64>>> {
-        let graph = &self.scene.graph;
-        let name = graph.node(cloth).name();
         let is_classic = self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC;
-        for key in [&n_cloth::WEAVE, &n_cloth::BUCKLING] {
-            if is_classic && graph.is_ever_nonzero(cloth, key) {
-                let place = self.scene.source.place(&format!("{name}.{}", key.row.name));
-                let message =
-                    format!("`{}` of `{name}` has no effect: `resistanceModel` is classic", key.row.name);
-                self.findings
-                    .warning(&place, message)
-                    .help("its law is one of stiffnesses: write `resistanceModel: physical`");
-            }
+        if is_classic {
+            self.warn_of_classic_weave(cloth);
         }
         if is_classic || !self.start.get(cloth, &n_cloth::WEAVE) {
             return Some(Vec::new());
         }
-        let place = self.scene.source.place(&format!("{name}.{}", n_cloth::WEAVE.row.name));
-        let sheared = [
-            graph.is_ever_nonzero(cloth, &n_cloth::SHEAR_RESISTANCE),
-            graph.changes(cloth, &n_cloth::SHEAR_STIFFNESS),
-        ];
-        if sheared == [false; 2] && self.start.get(cloth, &n_cloth::SHEAR_STIFFNESS) <= 0.0 {
-            let message = format!("`{name}` is woven, and nothing resists its shear");
-            self.findings
-                .warning(&place, message)
-                .help("give `shearStiffness`: 10 to 200 N/m in common cloth");
-        }
-        let coordinates = of_mesh(self.scene, graph.node(mesh));
-        let Some(uvs) = coordinates.and_then(|coordinates| corner_uvs(coordinates, rest)) else {
-            let mesh = graph.node(mesh).name();
-            let message = format!("`weave` of `{name}` asks for texture coordinates: `{mesh}` has none");
-            let help = "a polyPlane has them, and an OBJ file with `vt` lines and faces like `7/2`; the warp follows u";
-            self.findings.error(&place, message).help(help);
-            return None;
-        };
-        let angle = self.start.get(cloth, &n_cloth::WEAVE_ANGLE);
-        let mut flat = 0;
-        let mut first = 0;
-        let warp = rest.faces.iter().map(|face| {
-            let (uvs, places) =
-                (&uvs[first..first + face.len()], face.iter().map(|&k| rest.positions[k as usize]));
-            let places: Vec<_> = places.collect();
-            first += face.len();
-            warp_of(&places, uvs).map_or_else(
-                || {
-                    flat += 1;
-                    places[1] - places[0]
-                },
-                |warp| turned(warp, &places, angle),
-            )
-        });
-        let warp = warp.collect();
+        self.warn_of_free_shear(cloth);
+        let uvs = self.weave_uvs(cloth, mesh, rest)?;
+        let angles = self.weave_angles(cloth, mesh, rest.positions.len())?;
+        let (warp, flat) = warp_of_faces(rest, &uvs, &angles);
         if flat > 0 {
-            let message = format!("{flat} faces of `{name}` have no area in texture coordinates");
+            let message =
+                format!("{flat} faces of `{}` have no area in texture coordinates", self.weave_name(cloth));
             let help = "the warp of these is taken along their first edge";
+            let place = self.weave_place(cloth);
             self.findings.warning(&place, message).help(help);
         }
         Some(warp)
     }
+
+    fn weave_name(&self, cloth: NodeId) -> &str {
+        self.scene.graph.node(cloth).name()
+    }
+
+    fn weave_place(&self, cloth: NodeId) -> Range<usize> {
+        self.place(cloth, &n_cloth::WEAVE.row)
+    }
+
+    fn warn_of_classic_weave(&mut self, cloth: NodeId) {
+        for key in [&n_cloth::WEAVE, &n_cloth::BUCKLING] {
+            if self.scene.graph.is_ever_nonzero(cloth, key) {
+                let (word, name) = (key.row.name, self.weave_name(cloth));
+                let message = format!("`{word}` of `{name}` has no effect: `resistanceModel` is classic");
+                let help = "its law is one of stiffnesses: write `resistanceModel: physical`";
+                let place = self.place(cloth, &key.row);
+                self.findings.warning(&place, message).help(help);
+            }
+        }
+    }
+
+    fn warn_of_free_shear(&mut self, cloth: NodeId) {
+        let graph = &self.scene.graph;
+        let is_ever_stiff = graph.is_ever_nonzero(cloth, &n_cloth::SHEAR_RESISTANCE)
+            || graph.changes(cloth, &n_cloth::SHEAR_STIFFNESS)
+            || self.start.get(cloth, &n_cloth::SHEAR_STIFFNESS) > 0.0;
+        if !is_ever_stiff {
+            let message = format!("`{}` is woven, and nothing resists its shear", self.weave_name(cloth));
+            let help = "give `shearStiffness`: 10 to 200 N/m in common cloth";
+            let place = self.weave_place(cloth);
+            self.findings.warning(&place, message).help(help);
+        }
+    }
+
+    /// The texture coordinates of each corner; reports why if there are none.
+    fn weave_uvs(&mut self, cloth: NodeId, mesh: NodeId, rest: &Surface) -> Option<Vec<[f64; 2]>> {
+        let mesh = self.scene.graph.node(mesh);
+        let uvs = of_mesh(self.scene, mesh).and_then(|coordinates| corner_uvs(coordinates, rest));
+        if uvs.is_none() {
+            let (name, mesh) = (self.weave_name(cloth), mesh.name());
+            let message = format!("`weave` of `{name}` asks for texture coordinates: `{mesh}` has none");
+            let help = "a polyPlane has them, and an OBJ file with `vt` lines and faces like `7/2`; the warp follows u";
+            let place = self.weave_place(cloth);
+            self.findings.error(&place, message).help(help);
+        }
+        uvs
+    }
+
+    /// The angle of the warp to u at each point, in degrees: `weaveAngle` times its map.
+    fn weave_angles(&mut self, cloth: NodeId, mesh: NodeId, points: usize) -> Option<Vec<f64>> {
+        let errors = self.findings.errors();
+        let factors = self.map_values(&MapOfCloth { cloth, mesh, points, map: &WEAVE_ANGLE });
+        let angle = self.start.get(cloth, &n_cloth::WEAVE_ANGLE);
+        let angles = factors.map_or_else(
+            || vec![angle; points],
+            |factors| factors.into_iter().map(|factor| angle * factor).collect(),
+        );
+        (self.findings.errors() == errors).then_some(angles)
+    }
+}
+
+/// The warp of each face, and the number of faces without area in texture coordinates. The angle of a face is the mean
+/// over its corners.
+fn warp_of_faces(rest: &Surface, uvs: &[[f64; 2]], angles: &[f64]) -> (Vec<Vector3<f64>>, usize) {
+    let (mut first, mut flat) = (0, 0);
+    let mut warp = Vec::with_capacity(rest.faces.len());
+    for face in rest.faces.iter() {
+        let uvs = &uvs[first..first + face.len()];
+        first += face.len();
+        let places: Vec<_> = face.iter().map(|&k| rest.positions[k as usize]).collect();
+        let angle = angles[face[0] as usize]
+            + face.iter().map(|&k| angles[k as usize] - angles[face[0] as usize]).sum::<f64>()
+                / face.len() as f64;
+        warp.push(match warp_of(&places, uvs) {
+            Some(warp) => turned(warp, &places, angle),
+            None => {
+                flat += 1;
+                places[1] - places[0]
+            }
+        });
+    }
+    (warp, flat)
 }
 
 /// The texture coordinates of each corner of each face; `None` if they are not those of this mesh.
@@ -138,5 +185,16 @@ mod tests {
         let bias = turned(Vector3::x(), &SQUARE, 45.0);
         assert!((bias - Vector3::new(0.5f64.sqrt(), 0.5f64.sqrt(), 0.0)).norm() < 1e-12, "{bias}");
         assert!((turned(Vector3::x(), &SQUARE, 90.0) - Vector3::y()).norm() < 1e-12);
+    }
+    #[test]
+    fn the_warp_of_a_face_is_turned_by_the_mean_of_its_corners() {
+        let [corner, x, y] = [Vector3::zeros(), Vector3::x(), Vector3::y()];
+        let rest = Surface::sheet(corner, [y, x], [1, 1]);
+        let uvs: Vec<_> = rest.faces.corners().iter().map(|&k| rest.positions[k as usize]).collect();
+        let uvs: Vec<_> = uvs.iter().map(|place| [place.x, place.y]).collect();
+        let (warp, flat) = warp_of_faces(&rest, &uvs, &[0.0, 90.0, 30.0, 60.0]);
+        let bias = Vector3::new(0.5f64.sqrt(), 0.5f64.sqrt(), 0.0);
+        assert!((warp[0] - bias).norm() < 1e-12, "{}", warp[0]);
+        assert_eq!((warp.len(), flat), (1, 0));
     }
 }
