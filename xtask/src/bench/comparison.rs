@@ -87,7 +87,7 @@ mod tests {
 
     /// A run of `ms` milliseconds, `percent` error, and `depth` millimetres.
     fn run(ms: f64, percent: f64, depth: f64) -> RunResult {
-        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 24 };
+        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 24, tethers: false };
         let accuracy = Accuracy {
             strain: percent / 100.0,
             stretch: percent / 100.0,

@@ -65,7 +65,8 @@ pub fn write_csv(path: &Path, runs: &[RunResult]) -> anyhow::Result<()> {
 }
 
 fn csv_text(runs: &[RunResult]) -> String {
-    let mut text = String::from("workload,points,threads,frames,resistance,bend,evaluations,processor,wall");
+    let mut text =
+        String::from("workload,points,threads,frames,resistance,bend,evaluations,tethers,processor,wall");
     STAGES.iter().for_each(|(_, name)| text.extend([",", name]));
     text.push_str(
         ",link_evaluations,searches,pairs_unresolved,build,strain,stretch,max,sag,energy,depth,worst_depth,lower_edge,hash\n",
@@ -73,7 +74,8 @@ fn csv_text(runs: &[RunResult]) -> String {
     for run in runs {
         let (spec, setting, found) = (run.spec, run.spec.setting, run.accuracy);
         let named = format!("{},{},{},{}", spec.workload, spec.size, spec.threads, spec.frames);
-        let set = format!("{},{},{}", setting.resistance, setting.bend, setting.evaluations);
+        let set =
+            format!("{},{},{},{}", setting.resistance, setting.bend, setting.evaluations, setting.tethers);
         let times = [1e3 * run.timing.processor, 1e3 * run.timing.wall];
         let stages = run.shares.map(|share| run.ms() * share);
         let errors = [
@@ -131,7 +133,7 @@ mod tests {
 
     #[test]
     fn every_line_has_as_many_values_as_the_head() {
-        let setting = Setting { resistance: 20.0, bend: 0.1, evaluations: 3 };
+        let setting = Setting { resistance: 20.0, bend: 0.1, evaluations: 3, tethers: false };
         let spec = RunSpec { workload: Workload::Drape, size: 5, setting, threads: 1, frames: 1 };
         let text = csv_text(&[spec.run(1).unwrap()]);
         let values: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();

@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     fn small(workload: Workload, threads: u32) -> RunResult {
-        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 6 };
+        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 6, tethers: false };
         RunSpec { workload, size: 9, setting, threads, frames: 4 }.run(2).unwrap()
     }
 

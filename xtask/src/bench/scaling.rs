@@ -7,7 +7,7 @@ use super::workload::{DENSITY, GRAVITY, Setting, Workload};
 
 /// A cloth of 10 kN/m.
 const fn cloth(evaluations: u32) -> Setting {
-    Setting { resistance: 20.0, bend: 0.0, evaluations }
+    Setting { resistance: 20.0, bend: 0.0, evaluations, tethers: false }
 }
 
 /// Its stiffness in N/m.

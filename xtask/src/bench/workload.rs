@@ -53,12 +53,17 @@ pub struct Setting {
     pub bend: f64,
     /// Evaluations per 1/24 s, over 3 substeps.
     pub evaluations: u32,
+    /// Tethers to the pins.
+    pub tethers: bool,
 }
 
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} evaluations, stretch {}", self.evaluations, self.resistance)?;
-        if self.bend > 0.0 { write!(f, ", bend {}", self.bend) } else { Ok(()) }
+        if self.bend > 0.0 {
+            write!(f, ", bend {}", self.bend)?;
+        }
+        if self.tethers { f.write_str(", tethers") } else { Ok(()) }
     }
 }
 
@@ -98,6 +103,7 @@ impl Workload {
             stretch: true,
             bend: setting.bend > 0.0,
             damp: self == Self::Drape,
+            tethers: setting.tethers,
             ..ClothLists::NONE
         };
         builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(DENSITY), lists))?;
@@ -135,6 +141,7 @@ pub fn frame(setting: &Setting) -> FrameInput {
     cloth.stiffness = Stiffness::default();
     (cloth.stretch_resistance, cloth.compression_resistance) = (setting.resistance, setting.resistance);
     cloth.bend_resistance = setting.bend;
+    cloth.tethers = setting.tethers.then_some(1.0);
     frame
 }
 

@@ -110,7 +110,7 @@ impl Sheet {
         let surface = mesh::sheet(SIZE, Cells::Quads, Vector3::zeros(), Vector3::x(), Vector3::z());
         let lists =
             ClothLists { stretch: true, cross_links: true, bend: true, damp: true, ..ClothLists::NONE };
-        let mut input = frame(&Setting { resistance: 20.0, bend: 0.1, evaluations: 48 });
+        let mut input = frame(&Setting { resistance: 20.0, bend: 0.1, evaluations: 48, tethers: false });
         input.cloths[0] = ClothFrame { stretch_damp: 0.1, collide: false, ..input.cloths[0] };
         Self {
             cloth: Cloth::new(surface, Mass::PerArea(DENSITY), lists),
