@@ -43,7 +43,9 @@ pub fn budgets(program: &Program) -> Vec<String> {
     let line = |(index, own): (usize, &nucleus_graph::compile::NucleusProgram)| {
         let name = program.graph().node(own.node()).name();
         let budget = figures::number(program.budget(index)?);
-        Some(format!("`{name}` takes {budget} evaluations in 1/24 s (autoEvaluations)"))
+        Some(format!(
+            "`{name}` takes {budget} evaluations in 1/24 s, for about 1 % of stretch; `evaluations` sets others"
+        ))
     };
     program.nuclei().iter().enumerate().filter_map(line).collect()
 }

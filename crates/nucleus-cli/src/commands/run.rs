@@ -22,7 +22,7 @@ use crate::process::Outcome;
 use crate::recording::{self, RecordOptions};
 use crate::run_loop::{self, Finished};
 use crate::run_statistics::RunStatistics;
-use crate::{files, process, quality};
+use crate::{files, hanging, process, quality};
 
 /// Default number of frames from one checkpoint to the next: two seconds of film. A checkpoint takes about as many bytes
 /// as twenty frames.
@@ -150,6 +150,7 @@ impl Run {
                 self.program_of(&scene, wanted).map(|(program, setting)| (program, Some(setting)))?
             }
         };
+        hanging::budgets(&program).iter().for_each(|line| say!("{line}"));
         process::listen_for_signals()?;
         let facts = self.facts(setting, if is_changed { &read } else { &program })?;
         let coordinates = recording::texture_coordinates(&scene, &program);

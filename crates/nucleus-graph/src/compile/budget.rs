@@ -1,4 +1,4 @@
-//! How far sweeps leave cloth stretched, estimated from its mesh, and the budget that `autoEvaluations` takes from it.
+//! How far sweeps leave cloth stretched, estimated from its mesh, and the budget of a nucleus without `evaluations`.
 //!
 //! In a step of h seconds a sweep holds an edge no stiffer than about m / h², whatever its resistance is. An edge of length
 //! d that carries N points of mass m at rest is therefore stretched by N g h² / d: the mass cancels, and a small mesh
@@ -9,6 +9,7 @@ use nucleus_core::{COUNT_PERIOD, Cloth, FrameInput, PhysicalStiffness, PointId, 
 
 use crate::attributes::nucleus;
 use crate::diagnostic::Findings;
+use crate::graph::NodeId;
 use crate::scene::document::Scene;
 
 use super::program::{NucleusProgram, Program};
@@ -28,8 +29,8 @@ pub struct Hanging {
 
 /// The strain that `autoEvaluations` aims at.
 const WANTED: f64 = 0.01;
-/// Its bounds, per 1/24 s.
-const EVALUATIONS: [f64; 2] = [24.0, 10_000.0];
+/// The most evaluations that it takes, per 1/24 s.
+const MOST: f64 = 10_000.0;
 /// A sweep need not hold an edge stiffer than so many times its own stiffness: it stretches by itself.
 const STIFFER: f64 = 4.0;
 
@@ -66,30 +67,37 @@ fn evaluations(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<f64> {
     Some(COUNT_PERIOD / step.max(shortest))
 }
 
-/// Sets the budget of each nucleus with `autoEvaluations`, to the next ten.
+/// Raises the budget of each nucleus whose `evaluations` are not given to the next ten of what its cloths need.
 pub(super) fn choose(scene: &Scene, program: &mut Program, findings: &mut Findings) {
-    let is_auto = |node| scene.graph.node(node).get(&nucleus::AUTO_EVALUATIONS);
-    if !program.nuclei().iter().any(|own| is_auto(own.node())) {
-        return;
-    }
-    let [least, most] = EVALUATIONS;
+    let graph = &scene.graph;
     let needed = |(own, input): (&NucleusProgram, FrameInput)| {
-        let cloths = own.model().cloths().iter().enumerate();
+        let node = graph.node(own.node());
+        let default = node.get(&nucleus::EVALUATIONS);
+        let is_chosen = node.get(&nucleus::AUTO_EVALUATIONS)
+            && !graph.is_given(own.node(), &nucleus::EVALUATIONS)
+            && matches!(input.resistance, ResistanceModel::Physical { .. });
+        let cloths = own.model().cloths().iter().enumerate().filter(|_| is_chosen);
         let each = cloths.filter_map(|(index, cloth)| evaluations(index, cloth, &input));
-        let needed = each.fold(least, f64::max);
-        is_auto(own.node()).then(|| ((needed / 10.0 - 1e-9).ceil() * 10.0).clamp(least, most))
+        let most = each.fold(default, f64::max);
+        (most > default).then(|| ((most / 10.0 - 1e-9).ceil() * 10.0).min(MOST))
     };
-    let budgets: Vec<Option<f64>> = program.nuclei().iter().zip(program.first_inputs()).map(needed).collect();
-    for own in program.nuclei().iter().filter(|own| is_auto(own.node())) {
-        let node = scene.graph.node(own.node());
-        if node.setting(&nucleus::EVALUATIONS).is_some() {
-            let name = node.name();
-            let place = scene.source.place(&format!("{name}.{}", nucleus::EVALUATIONS.row.name));
-            let message = format!("`evaluations` of `{name}` has no effect: `autoEvaluations` is true");
-            findings.warning(&place, message).help("leave out one of them");
-        }
+    let budgets = program.nuclei().iter().zip(program.first_inputs()).map(needed).collect();
+    for node in program.nuclei().iter().map(NucleusProgram::node) {
+        warn_if_given_twice(scene, node, findings);
     }
     program.set_budgets(budgets);
+}
+
+fn warn_if_given_twice(scene: &Scene, node: NodeId, findings: &mut Findings) {
+    let graph = &scene.graph;
+    let is_asked =
+        graph.is_given(node, &nucleus::AUTO_EVALUATIONS) && graph.node(node).get(&nucleus::AUTO_EVALUATIONS);
+    if is_asked && graph.is_given(node, &nucleus::EVALUATIONS) {
+        let name = graph.node(node).name();
+        let place = scene.source.place(&format!("{name}.{}", nucleus::AUTO_EVALUATIONS.row.name));
+        let message = format!("`autoEvaluations` of `{name}` has no effect: `evaluations` is given");
+        findings.warning(&place, message).help("leave out one of them");
+    }
 }
 
 /// The pinned points of a cloth, each once.

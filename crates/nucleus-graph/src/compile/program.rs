@@ -198,7 +198,8 @@ impl Program {
         &self.data.warnings
     }
 
-    /// The evaluations in 1/24 s that `autoEvaluations` chose for a nucleus; `None` where it is off.
+    /// The evaluations in 1/24 s to which `autoEvaluations` raised those of a nucleus; `None` where they are given or
+    /// suffice.
     pub fn budget(&self, nucleus: usize) -> Option<f64> {
         self.data.budgets.get(nucleus).copied().flatten()
     }

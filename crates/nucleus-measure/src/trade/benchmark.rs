@@ -379,13 +379,11 @@ fn own_setting(scene: &Scene, model: ResistanceModel) -> Setting {
         _ => default,
     };
     let number = |key: &Key<i64>, default: f64| most(node.and_then(|node| node.setting(key)), default);
-    // The budget of a scene with `autoEvaluations`.
-    let auto = node.filter(|node| node.get(&nucleus::AUTO_EVALUATIONS));
-    let chosen = match model {
-        ResistanceModel::Physical { evaluations } => auto.map(|_| evaluations),
-        ResistanceModel::Classic => None,
+    // Those of the first frame are by `autoEvaluations` where none are given.
+    let first = match model {
+        ResistanceModel::Physical { evaluations } => evaluations,
+        ResistanceModel::Classic => 96.0,
     };
-    let given = || most(node.and_then(|node| node.setting(&nucleus::EVALUATIONS)), 96.0);
     Setting {
         reading: match model {
             ResistanceModel::Classic => Reading::Classic,
@@ -393,7 +391,7 @@ fn own_setting(scene: &Scene, model: ResistanceModel) -> Setting {
         },
         substeps: number(&nucleus::SUB_STEPS, 3.0) as u32,
         collision_iterations: number(&nucleus::MAX_COLLISION_ITERATIONS, 4.0) as u32,
-        evaluations: chosen.unwrap_or_else(given),
+        evaluations: most(node.and_then(|node| node.setting(&nucleus::EVALUATIONS)), first),
         resistance: 1.0,
         tethers: false,
     }
@@ -432,9 +430,6 @@ fn set_quality(graph: &mut Graph, setting: &Setting) {
     put(graph, id, &nucleus::SUB_STEPS.row, int(setting.substeps));
     put(graph, id, &nucleus::MAX_COLLISION_ITERATIONS.row, int(setting.collision_iterations));
     put(graph, id, &nucleus::EVALUATIONS.row, evaluations);
-    if graph.node(id).get(&nucleus::AUTO_EVALUATIONS) {
-        put(graph, id, &nucleus::AUTO_EVALUATIONS.row, Held::Fixed(Value::Bool(false)));
-    }
 }
 
 fn scale_resistances(graph: &mut Graph, cloth: NodeId, factor: f64) {
