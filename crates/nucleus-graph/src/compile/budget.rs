@@ -1,9 +1,10 @@
 //! How far sweeps leave cloth stretched, estimated from its mesh, and the budget of a nucleus without `evaluations`.
 //!
 //! In a step of h seconds a sweep holds an edge no stiffer than about m / h², whatever its resistance is. An edge of length
-//! d that carries N points of mass m at rest is therefore stretched by N g h² / d: the mass cancels, and a small mesh
-//! needs short steps. Where cloth hangs by P pins, an edge beside them carries (points - P) / P points. Elsewhere an edge
-//! carries at most half the cloth in a line, as over the edge of a table.
+//! d between points of mass m that carries N times that mass at rest is therefore stretched by N g h² / d: a small mesh
+//! needs short steps. Where cloth hangs by P pins, each edge beside them carries a P-th of its mass; where the mass is
+//! uniform that is (points - P) / P points. Elsewhere an edge carries at most half the cloth in a line, as over the edge of
+//! a table.
 
 use nucleus_core::{COUNT_PERIOD, Cloth, FrameInput, PhysicalStiffness, PointId, ResistanceModel};
 
@@ -39,14 +40,13 @@ pub fn hanging(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<Hangin
     let ResistanceModel::Physical { evaluations } = input.resistance else { return None };
     let settings = input.cloths.get(index)?;
     let points = cloth.surface.positions.len();
-    let pins = pins(index, input).len();
-    if !cloth.lists.stretch || pins == 0 || settings.tethers.is_some() || !settings.feels_gravity {
+    let pins = pins(index, input);
+    if !cloth.lists.stretch || pins.is_empty() || settings.tethers.is_some() || !settings.feels_gravity {
         return None;
     }
     let step = COUNT_PERIOD / evaluations;
-    let load = (points - pins) as f64 / pins as f64;
-    let strain = load * input.gravity.norm() * step * step / mean_edge(cloth)?;
-    Some(Hanging { points, pins, evaluations, strain })
+    let strain = load_at_pins(cloth, &pins) * input.gravity.norm() * step * step / mean_edge(cloth)?;
+    Some(Hanging { points, pins: pins.len(), evaluations, strain })
 }
 
 /// The evaluations in 1/24 s that leave a cloth stretched by about 1 % at rest; `None` where nothing stretches it.
@@ -56,14 +56,14 @@ fn evaluations(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<f64> {
     if !cloth.lists.stretch || !settings.feels_gravity || gravity == 0.0 || settings.is_driven {
         return None;
     }
-    let points = cloth.surface.positions.len();
-    let (pins, across) = (pins(index, input).len(), extent(cloth) / edge / 2.0);
-    let at_pins =
-        if pins > 0 && settings.tethers.is_none() { (points - pins) as f64 / pins as f64 } else { 0.0 };
-    let step = (WANTED * edge / (at_pins.max(across) * gravity)).sqrt();
+    let (pins, across) = (pins(index, input), extent(cloth) / edge / 2.0);
+    let held = if settings.tethers.is_none() { &pins[..] } else { &[] };
+    let load = load_at_pins(cloth, held).max(across);
+    let step = (WANTED * edge / (load * gravity)).sqrt();
     let PhysicalStiffness { stretch, warp, weft, .. } = PhysicalStiffness::of(settings);
-    let mass = cloth.point_masses().iter().sum::<f64>() / points as f64;
-    let shortest = (mass / (STIFFER * stretch.max(warp).max(weft))).sqrt();
+    let mass = cloth.point_masses().iter().sum::<f64>() / cloth.surface.positions.len() as f64;
+    let lightest = mass / lightness(cloth, held).max(1.0);
+    let shortest = (lightest / (STIFFER * stretch.max(warp).max(weft))).sqrt();
     Some(COUNT_PERIOD / step.max(shortest))
 }
 
@@ -109,13 +109,59 @@ fn pins(index: usize, input: &FrameInput) -> Vec<PointId> {
     pins
 }
 
+/// What an edge beside a pin carries, over the mass of a point there; 0 without pins.
+fn load_at_pins(cloth: &Cloth, pins: &[PointId]) -> f64 {
+    let free = cloth.surface.positions.len() - pins.len();
+    if pins.is_empty() { 0.0 } else { lightness(cloth, pins) * free as f64 / pins.len() as f64 }
+}
+
+/// The mean mass of a point over that of the points beside the pins; 1 without pins. By faces, because a point of the
+/// border has half the mass of its neighbours.
+fn lightness(cloth: &Cloth, pins: &[PointId]) -> f64 {
+    let is_held = |face: &[u32]| face.iter().any(|&point| pins.binary_search(&PointId(point)).is_ok());
+    let (mut all, mut held) = (Mean::default(), Mean::default());
+    for (face, mass) in cloth.surface.faces.iter().zip(face_masses(cloth)) {
+        all.add(mass);
+        if is_held(face) {
+            held.add(mass);
+        }
+    }
+    if held.sum > 0.0 { all.mean() / held.mean() } else { 1.0 }
+}
+
+#[derive(Default)]
+struct Mean {
+    sum: f64,
+    count: f64,
+}
+
+impl Mean {
+    fn add(&mut self, x: f64) {
+        (self.sum, self.count) = (self.sum + x, self.count + 1.0);
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count
+    }
+}
+
+/// The mass of each face: of each corner, its share in the mass of the point.
+fn face_masses(cloth: &Cloth) -> impl Iterator<Item = f64> + '_ {
+    let mut shares = cloth.point_masses();
+    let mut faces = vec![0.0; shares.len()];
+    cloth.surface.faces.corners().iter().for_each(|&point| faces[point as usize] += 1.0);
+    shares.iter_mut().zip(&faces).for_each(|(mass, faces)| *mass /= f64::max(*faces, 1.0));
+    cloth.surface.faces.iter().map(move |face| face.iter().map(|&point| shares[point as usize]).sum())
+}
+
 /// Mean length of the sides of the faces in metres; `None` without faces.
 fn mean_edge(cloth: &Cloth) -> Option<f64> {
     let place = |point: u32| cloth.surface.positions[point as usize];
     let sides = cloth.surface.faces.iter().flat_map(|face| face.iter().zip(face.iter().cycle().skip(1)));
     let lengths = sides.map(|(&a, &b)| (place(a) - place(b)).norm());
-    let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
-    (sum > 0.0).then(|| sum / count)
+    let mut mean = Mean::default();
+    lengths.for_each(|length| mean.add(length));
+    (mean.sum > 0.0).then(|| mean.mean())
 }
 
 /// The longest side of the box round a cloth at rest, in metres.

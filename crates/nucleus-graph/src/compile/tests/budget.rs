@@ -39,6 +39,9 @@ fn the_budget_follows_from_edge_load_and_gravity() {
     assert_eq!(budget(&hung(0.01, "evaluations: 50", "")), 50.0);
     // Tethers carry the load of the pins: 8 points in a line remain.
     assert_eq!(budget(&hung(0.01, "", "tethers: true")), 150.0);
+    // Points of a hundredth of the mass beside the pins: ten times the evaluations, nearly.
+    let light = budget(&hung(1.0, "", "massPerVertex: expression(\"z > 0.4 ? 0.01 : 1\")"));
+    assert!((550.0..=630.0).contains(&light), "{light}");
     // Cloth of 5 N/m stretches by itself: h = √(m / 4 K), m = 0.2 kg/m² · 1 m² / 289.
     assert_eq!(budget(&hung(1.0, "gravity: 980", "stretchResistance: 0.01")), 96.0);
 }
