@@ -269,7 +269,7 @@ impl<R: Real> Simulation<R> {
 
     fn combined(&self) -> CombinedState<'_> {
         let parts = self.runs.iter().map(|run| &run.solver as &dyn StateView).collect();
-        CombinedState { program: &self.program, parts }
+        CombinedState { program: &self.program, parts, solving: None }
     }
 }
 

@@ -15,6 +15,9 @@ pub(super) struct CombinedState<'a> {
     pub(super) program: &'a Program,
     /// One per nucleus.
     pub(super) parts: Vec<&'a dyn StateView>,
+    /// The nucleus that is being solved, and the share of its evaluation interval that has passed. All others are at the
+    /// end of theirs.
+    pub(super) solving: Option<(usize, f64)>,
 }
 
 impl CombinedState<'_> {
@@ -82,9 +85,11 @@ impl StateView for CombinedState<'_> {
         part.collider_moved(id)
     }
 
+    /// `share` is that of the frame; a solver moves its colliders over the evaluation interval.
     fn collider_points(&self, collider: ColliderId, share: f64, out: &mut Vec<Vector3<f64>>) {
-        let (part, id, _) = self.collider(collider);
-        part.collider_points(id, share, out);
+        let (k, id) = self.program.locate_collider(collider);
+        let own = self.solving.map_or(share, |(solving, own)| if solving == k { own } else { 1.0 });
+        self.parts[k].collider_points(id, own, out);
     }
 
     fn point(&self, cloth: ClothId, point: usize) -> Vector3<f64> {
@@ -126,14 +131,16 @@ impl<'a> CombinedObserver<'a> {
 impl StepObserver for CombinedObserver<'_> {
     fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
         let parts = self.parts(state);
+        let solving = Some((self.nucleus, f64::from(moment.substep) / f64::from(moment.substeps)));
         let moment = SubstepIndex { substep: self.done + moment.substep, substeps: self.total };
-        self.watch.substep(moment, &CombinedState { program: self.program, parts });
+        self.watch.substep(moment, &CombinedState { program: self.program, parts, solving });
     }
 
     fn step(&mut self, share: f64, state: &dyn StateView) {
         let parts = self.parts(state);
+        let solving = Some((self.nucleus, share));
         let share = (f64::from(self.done) + share * f64::from(self.own)) / f64::from(self.total);
-        self.watch.step(share, &CombinedState { program: self.program, parts });
+        self.watch.step(share, &CombinedState { program: self.program, parts, solving });
     }
 
     fn should_continue(&self) -> ControlFlow<()> {

@@ -96,3 +96,61 @@ fn the_initial_state_has_the_positions_of_the_meshes() {
     run.state().positions(ClothId(0), run.units_per_metre(), &mut positions);
     assert_eq!(positions[0], [-50.0, 0.0, 50.0]);
 }
+
+/// Notes the height of the first collider's first point at each time step, beside the share of the frame.
+#[derive(Default)]
+struct Heights(Vec<(f64, f64)>);
+
+impl StepObserver for Heights {
+    fn substep(&mut self, _: SubstepIndex, _: &dyn StateView) {}
+
+    fn step(&mut self, share: f64, state: &dyn StateView) {
+        let mut points = Vec::new();
+        state.collider_points(ColliderId(0), share, &mut points);
+        self.0.push((share, points[0].y));
+    }
+}
+
+/// The heights in the first frame, less that of the start state. The ball rises at 4 m per frame.
+fn rise(every: f64, second: &str) -> Vec<(f64, f64)> {
+    let text = format!(
+        r#"Scene(time: (start: 1, end: 9, fps: 24, every: {every}), nodes: {{
+            "n": nucleus(),
+            "p": polyPlane(width: 1, height: 1, subdivisions: (2, 2)),
+            "c": nCloth(inputMesh: "p", nucleus: "n"),
+            "b": polySphere(radius: 1, translateX: 9, translateY: keys([(1, 0), (9, 32)])),
+            "r": nRigid(inputMesh: "b", nucleus: "n"),
+            {second}
+        }}, checks: [finite])"#
+    );
+    let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
+    let program = compile(&scene).expect("a valid scene");
+    let mut run = Simulation::<f64>::new(&program, 1);
+    let mut start = Vec::new();
+    run.state().collider_points(ColliderId(0), 1.0, &mut start);
+    let mut heights = Heights::default();
+    run.advance(&mut heights);
+    heights.0.into_iter().map(|(share, height)| (share, height - start[0].y)).collect()
+}
+
+#[test]
+fn a_collider_is_seen_at_the_time_of_the_step_however_often_the_animation_is_evaluated() {
+    for every in [1.0, 0.5, 0.25] {
+        let heights = rise(every, "");
+        assert!(heights.len() >= 4);
+        for (share, height) in heights {
+            assert!((height - 4.0 * share).abs() < 1e-5, "{height} at {share}, every {every}");
+        }
+    }
+}
+
+#[test]
+fn a_collider_of_one_nucleus_stays_at_the_end_of_its_frame_while_the_next_nucleus_is_solved() {
+    let second = r#""z": nucleus(), "d": nCloth(inputMesh: "p", nucleus: "z")"#;
+    let heights: Vec<f64> = rise(1.0, second).into_iter().map(|(_, height)| height).collect();
+    let (own, other) = heights.split_at(heights.len() / 2);
+    for (step, height) in (1..).zip(own) {
+        assert!((height - 4.0 * f64::from(step) / own.len() as f64).abs() < 1e-5, "{height} at step {step}");
+    }
+    assert!(other.iter().all(|height| (height - 4.0).abs() < 1e-5), "{other:?}");
+}
