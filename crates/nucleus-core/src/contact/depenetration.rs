@@ -137,7 +137,7 @@ pub fn exit_face(place: Point, collider: &ColliderModel, state: &ColliderState, 
 
 /// Inside test: whether a ray from a position leaves a closed mesh an odd number of times. A ray through an edge
 /// meets one of its two faces, because each edge belongs to one side.
-fn is_inside(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> bool {
+pub fn is_inside(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> bool {
     let mut crossings = 0;
     let from = place - state.origin(time);
     let ray = Aabb::new(from, from + Point::x() * RAY_LENGTH);

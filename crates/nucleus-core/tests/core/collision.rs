@@ -4,8 +4,9 @@ use crate::scenes::{
     INSCRIBED, LINKS, Vec3, cuboid, drape, frame, grid, ground, one_cloth, physical, pins, sphere, still,
 };
 use nucleus_core::{
-    ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ContactState, FrameInput, GroundPlane, Pin,
-    PointId, ResistanceModel, Solver, StateView, StepObserver, SubstepIndex, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ContactState, Faces, FrameInput,
+    GroundPlane, Mass, ModelBuilder, Pin, PointId, ResistanceModel, Solver, Start, StateView, StepObserver,
+    SubstepIndex, Surface,
 };
 
 const CLOTH: ClothId = ClothId(0);
@@ -208,6 +209,111 @@ fn cloth_that_is_stretched_a_thousandfold_still_holds_a_box() {
     // The box has pushed the corner below the sheet.
     let middle = solver.point(CLOTH, 4);
     assert!(middle.y < -0.9, "{middle}");
+}
+
+/// A thin post that rises below a sheet of four large faces, off their points and edges. Returns the mean height of the
+/// sheet above the height at which it starts, once the post has risen by 0.4 m, and the number of unresolved pairs.
+fn lifted_by(post: Surface, place: impl Fn(&Vec3) -> Vec3) -> (f64, u64) {
+    let sheet = grid(3, 3, Vec3::x(), Vec3::z());
+    let mut builder = one_cloth(sheet, LINKS);
+    builder.collider(Collider { surface: post.clone() }).expect("a good mesh");
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let mut unresolved = 0;
+    for step in 0..8 {
+        let [start, end] = [step, step + 1].map(|k| {
+            let risen = Vec3::y() * (0.05 * f64::from(k));
+            post.positions.iter().map(|p| place(p) + risen).collect::<Vec<_>>()
+        });
+        let post = ColliderFrame { start, end, collide: true, ..ColliderFrame::default() };
+        let cloths = vec![ClothFrame { thickness: 0.003, ..still() }];
+        let gravity = Vec3::zeros();
+        let input = FrameInput { gravity, colliders: vec![post], cloths, ..frame(3, physical(96.0)) };
+        unresolved += solver.step(&input, &mut ()).pairs_unresolved;
+    }
+    ((0..9).map(|point| solver.point(CLOTH, point).y).sum::<f64>() / 9.0, unresolved)
+}
+
+// EVIDENCE: N2.3-4  corners of a collider do not pass faces of cloth
+#[test]
+fn a_closed_collider_lifts_cloth_whichever_way_its_faces_point() {
+    let post = cuboid(Vec3::new(0.3, -0.6, 0.35), Vec3::new(0.34, -0.01, 0.39));
+    let mut turned = Surface { positions: post.positions.clone(), ..Surface::default() };
+    post.faces.iter().for_each(|face| turned.faces.push(&face.iter().rev().copied().collect::<Vec<_>>()));
+    let as_is = |p: &Vec3| *p;
+    let mirrored = |p: &Vec3| Vec3::new(0.64 - p.x, p.y, p.z);
+    let heights = [lifted_by(post.clone(), as_is), lifted_by(turned, as_is), lifted_by(post, mirrored)];
+    for (height, unresolved) in heights {
+        assert!(height > 0.1 && unresolved == 0, "{heights:?}");
+    }
+}
+
+// EVIDENCE: N2.3-4  corners of a collider do not pass faces of cloth
+#[test]
+fn cloth_inside_a_container_is_held_by_corners_that_point_inwards() {
+    // A box with a ceiling whose centre hangs down to just above the sheet. The box moves down by 0.4 m.
+    let mut room = cuboid(Vec3::new(-1.0, -1.0, -1.0), Vec3::new(2.0, 1.5, 2.0));
+    let mut faces = Faces::default();
+    room.faces.iter().filter(|face| *face != [2, 6, 7, 3]).for_each(|face| faces.push(face));
+    [[2, 6, 8], [6, 7, 8], [7, 3, 8], [3, 2, 8]].iter().for_each(|face| faces.push(face));
+    room.positions.push(Vec3::new(0.3, 0.01, 0.35));
+    room.faces = faces;
+    let sheet = grid(3, 3, Vec3::x(), Vec3::z());
+    let mut builder = one_cloth(sheet, LINKS);
+    builder.collider(Collider { surface: room.clone() }).expect("a good mesh");
+    let mut solver = Solver::<f32>::new(builder, 1);
+    for step in 0..8 {
+        let [start, end] = [step, step + 1].map(|k| {
+            let lowered = Vec3::y() * (0.05 * f64::from(k));
+            room.positions.iter().map(|p| p - lowered).collect::<Vec<_>>()
+        });
+        let room = ColliderFrame { start, end, collide: true, trapped_check: false, ..Default::default() };
+        let cloths = vec![ClothFrame { thickness: 0.003, ..still() }];
+        let gravity = Vec3::zeros();
+        let input = FrameInput { gravity, colliders: vec![room], cloths, ..frame(3, physical(96.0)) };
+        assert_eq!(solver.step(&input, &mut ()).pairs_unresolved, 0);
+    }
+    let height = (0..9).map(|point| solver.point(CLOTH, point).y).sum::<f64>() / 9.0;
+    assert!(height < -0.1, "{height}");
+}
+
+// EVIDENCE: N2.3-4  corners of a collider do not pass faces of cloth
+#[test]
+fn a_corner_that_was_on_the_far_side_of_a_post_is_not_forgotten() {
+    // A large triangle leans against the right edge of a post's top and tilts to the left within one substep. Seen from the
+    // left corners it starts on the far side of the post.
+    let post = cuboid(Vec3::new(-0.1, -2.0, -0.05), Vec3::new(0.1, 0.5, 0.05));
+    let height = |x: f64, [slope, middle]: [f64; 2]| middle + slope * x;
+    let lines = [[-2.5, 0.77], [0.6, 0.5]];
+    let places = [[0.6, -0.6], [0.6, 0.6], [-0.6, 0.0]];
+    let at = |line: [f64; 2]| places.map(|[x, z]| Vec3::new(x, height(x, line), z)).to_vec();
+    let mut triangle = Surface { positions: at(lines[0]), ..Surface::default() };
+    triangle.faces.push(&[0, 1, 2]);
+    let velocities = at(lines[1]).iter().zip(at(lines[0])).map(|(to, from)| (to - from) * 24.0).collect();
+    let start = Start { velocities, ..Start::default() };
+    let cloth = Cloth { start, ..Cloth::new(triangle, Mass::PerPoint(0.01), ClothLists::NONE) };
+    let mut builder = ModelBuilder::new();
+    builder.cloth(cloth).expect("a good mesh");
+    builder.collider(Collider { surface: post }).expect("a good mesh");
+    let mut solver = Solver::<f64>::new(builder, 1);
+    let colliders = vec![ColliderFrame { collide: true, ..ColliderFrame::default() }];
+    let cloths = vec![ClothFrame { thickness: 0.003, ..still() }];
+    let input = FrameInput {
+        gravity: Vec3::zeros(),
+        air_density: 0.0,
+        colliders,
+        cloths,
+        ..frame(1, physical(96.0))
+    };
+    let report = solver.step(&input, &mut ());
+    let [a, b, c] = [0, 1, 2].map(|point| solver.point(CLOTH, point));
+    let normal = (b - a).cross(&(c - a));
+    let above = |x: f64, z: f64| {
+        let corner = Vec3::new(x, 0.5, z);
+        a.y - corner.y - (normal.x * (corner.x - a.x) + normal.z * (corner.z - a.z)) / normal.y
+    };
+    let heights = [above(-0.1, -0.05), above(-0.1, 0.05), above(0.1, -0.05), above(0.1, 0.05)];
+    assert!(heights.iter().all(|&height| height > 0.0), "{heights:?}");
+    assert_eq!(report.pairs_unresolved, 0);
 }
 
 // EVIDENCE: N2.2-4  the last pass of a step is collision: nothing is left inside

@@ -195,6 +195,11 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         self.weights.iter().all(|&weight| weight > R::from_f64(1e-4))
     }
 
+    /// The place of the contact on the cloth at the start of the step, in metres.
+    pub(super) fn start_place(&self, step: &ColliderStep<'_, R>) -> Point {
+        interpolate(step.cloth_start_positions(self.points), self.weights.map(R::to_f64))
+    }
+
     /// Whether the contact is on the far side of the surface. `outward` is the pseudonormal there.
     pub fn is_behind(&self, outward: Point) -> bool {
         Point::from(self.normal.map(R::to_f64)).dot(&outward) < 0.0

@@ -12,6 +12,7 @@ use crate::contact::collider::contact::ColliderContact;
 use crate::contact::collider::contacts::{ColliderContacts, FoundContacts};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::{Boxes, ColliderState};
+use crate::contact::depenetration::is_inside;
 use crate::contact::pair_filter::PairFilter;
 use crate::contact::time_step::ColliderStep;
 use crate::math::Real;
@@ -214,7 +215,9 @@ impl<R: Real> ColliderQuery<'_, R> {
         }
     }
 
-    /// Whether the cloth element of a contact is inside the collider: kept on that side, it would never leave.
+    /// Whether the cloth element of a contact is inside the collider and is to leave it: kept on that side, it never would.
+    /// The pseudonormal rules most contacts out; it is wrong where another part of the collider is nearer, or faces point
+    /// inwards, so the inside test decides.
     fn is_behind_surface<const N: usize, const M: usize>(
         &self,
         contact: &ColliderContact<R, N, M>,
@@ -224,8 +227,11 @@ impl<R: Real> ColliderQuery<'_, R> {
             let [from, _] = self.step.collider_positions(self.collider.boundary.triangles[face as usize]);
             (from[1] - from[0]).cross(&(from[2] - from[0])).try_normalize(0.0).unwrap_or_default()
         };
-        let pseudonormals = self.collider.pseudonormals.as_ref().filter(|_| contact.is_interior());
-        pseudonormals.is_some_and(|pseudonormals| contact.is_behind(outward(pseudonormals, &normal)))
+        let is_filtered = self.step.material.depenetrates && contact.is_interior();
+        let pseudonormals = self.collider.pseudonormals.as_ref().filter(|_| is_filtered);
+        let is_behind = |pseudonormals| contact.is_behind(outward(pseudonormals, &normal));
+        pseudonormals.is_some_and(is_behind)
+            && is_inside(contact.start_place(self.step), self.collider, self.state, self.step.time[0])
     }
 
     /// Whether a point is behind the plane of a face.
