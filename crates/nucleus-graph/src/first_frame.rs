@@ -148,7 +148,10 @@ fn warn_of_intersections(scene: &Scene, program: &Program, findings: &mut Findin
     let positions: Vec<Vector3<f64>> =
         objects.iter().flat_map(|object| start(program, object.kind)).copied().collect();
     let mut scope = AuditScope::default();
+    // Whether each collider leads points out, in the order of the program.
+    let mut leads_out = Vec::new();
     for (nucleus, input) in program.nuclei().iter().zip(program.first_inputs()) {
+        leads_out.extend(input.colliders.iter().map(|collider| collider.trapped_check));
         scope.add(nucleus, input, |_| Vec::new());
     }
     let filter = collision_rules(program, program.time().start, &scope, &world);
@@ -166,8 +169,10 @@ fn warn_of_intersections(scene: &Scene, program: &Program, findings: &mut Findin
         for (b, collider) in objects.iter().enumerate().filter(|(_, object)| !is_cloth(object)) {
             // Particles that are yet to be emitted have no first point.
             let Some(point) = start(program, cloth.kind).first() else { continue };
+            let is_led_out =
+                matches!(collider.kind, ObjectKind::Collider(id) if leads_out.get(id.index()) == Some(&true));
             let collides = filter.is_tested(a, b) && !pairs.contains_key(&(a, b));
-            if collides && is_inside(point, start(program, collider.kind), &collider.faces) {
+            if collides && is_led_out && is_inside(point, start(program, collider.kind), &collider.faces) {
                 report_inside(scene, cloth, collider, findings);
             }
         }
@@ -322,6 +327,7 @@ mod tests {
         assert!(ball(0.9, "")[0].0.starts_with("`cloth` and `rigid` start with "), "{:?}", ball(0.9, ""));
         assert_eq!(ball(0.02, "")[0].0, "`cloth` starts inside `rigid`");
         assert_eq!(ball(0.02, "collide: false"), []);
+        assert_eq!(ball(0.02, "trappedCheck: false"), [], "it is to stay inside");
         assert_eq!(ball(1.2, ""), []);
     }
 
