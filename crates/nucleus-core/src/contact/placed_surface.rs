@@ -96,7 +96,7 @@ impl PlacedSurface {
 }
 
 /// Where a ray meets a triangle, as a share of its length (Möller and Trumbore 1997).
-fn meets(from: Point, ray: Point, [a, b, c]: [Point; 3]) -> Option<f64> {
+pub fn meets(from: Point, ray: Point, [a, b, c]: [Point; 3]) -> Option<f64> {
     let [ab, ac] = [b - a, c - a];
     let across = ray.cross(&ac);
     let volume = ab.dot(&across);

@@ -13,6 +13,7 @@ use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::events::{Spawn, collision_events};
+use crate::particles::first_way::{fit_obstacles, stopped_at};
 use crate::particles::population::{Population, close_up};
 use crate::particles::pruning::Crowd;
 use crate::particles::ramps::apply_ramps;
@@ -129,7 +130,8 @@ fn add_births<R: Real>(
     counters: &mut ContactCounters,
 ) {
     let Solver { model, state, contact, pool, .. } = solver;
-    let births = state.populations[index].due(&frame.births, end);
+    let mut births = state.populations[index].due(&frame.births, end).peekable();
+    let colliders = &model.colliders;
     let (cloth, mass) = (state.populations[index].cloth(), state.populations[index].birth_mass());
     let object = &mut model.cloths[cloth];
     let (first, row_of) = (object.points().end, object.blocks.rows().start);
@@ -137,10 +139,19 @@ fn add_births<R: Real>(
     let living = object.points();
     let mut crowd = crowd_of(&frame.cloths[cloth])
         .map(|distance| Crowd::new(distance, living.map(|row| state.position(row).into())));
+    if births.peek().is_some() {
+        fit_obstacles(contact, colliders, cloth, end);
+    }
     for birth in births {
         let age = (end - birth.time) * frame.duration;
-        let (position, velocity) = flight.after(birth, age);
+        let (mut position, mut velocity) = flight.after(birth, age);
         let population = &mut state.populations[index];
+        let row = row_of + population.len() as u32;
+        let way = [birth.position, position];
+        let stop = || stopped_at(contact, colliders, (cloth, row), way, [birth.time, end]);
+        if let Some(place) = (!population.is_full()).then(stop).flatten() {
+            (position, velocity) = (place, birth.velocity);
+        }
         if population.is_full() || !(is_in_range(&position) && is_in_range(&velocity)) || age.is_nan() {
             counters.births_refused += 1;
             continue;

@@ -12,6 +12,7 @@
 //! |---|---|
 //! | ages, lifespans and numbers | [`population`] |
 //! | births and deaths in the solver's columns | [`lifecycle`] |
+//! | new particles that a surface would be in the way of | [`first_way`] |
 //! | time steps of particles that depend on nothing but colliders | [`free`], then [`free_run`] |
 //! | attributes that differ by particle | [`ramps`] |
 //! | what an observer draws of them | [`looks`] |
@@ -21,6 +22,7 @@
 //! | new particles that would overlap others | [`pruning`] |
 
 pub mod events;
+pub mod first_way;
 pub mod free;
 pub mod free_run;
 pub mod lifecycle;

@@ -326,3 +326,47 @@ fn particles_born_inside_the_reach_of_a_moving_collider_stay_outside_of_it() {
         assert_eq!(places(&solver).iter().filter(|p| inside(p)).count(), 0, "frame {number}");
     }
 }
+
+/// The heights of particles that are emitted at 100 m/s at a wall 0.2 m below, which is one square and moves at 2.4 m/s along
+/// the way, less the height of the wall; and those of the ground plane in its place.
+fn heights_above(obstacle: &str, wall_speed: f64) -> Vec<f64> {
+    let mut wall = grid(2, 2, Vec3::x() * 2000.0, -Vec3::z() * 2000.0);
+    wall.positions.iter_mut().for_each(|p| *p += Vec3::new(-1000.0, 0.0, 1000.0));
+    let mut builder = ModelBuilder::new();
+    builder.cloth(room(100, &[], &[], 1.0)).expect("valid particles");
+    builder.collider(Collider { surface: wall.clone() }).expect("a good mesh");
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let at = |frames: f64| {
+        let by = Vec3::y() * (wall_speed * frames * COUNT_PERIOD);
+        wall.positions.iter().map(|p| p + by).collect::<Vec<_>>()
+    };
+    for number in 0..4 {
+        let mut births = even_births(number, 9.7, Vec3::new(3.0, -100.0, 0.0));
+        births.iter_mut().for_each(|birth| birth.position.y = 0.2 + wall_speed.abs() * 4.0 * COUNT_PERIOD);
+        let now = f64::from(number);
+        let collide = obstacle == "wall";
+        let wall = ColliderFrame { start: at(now), end: at(now + 1.0), collide, ..Default::default() };
+        let input = FrameInput {
+            births,
+            plane: (obstacle == "ground").then(|| ground(0.1)),
+            cloths: vec![ClothFrame { self_collision: SelfCollision::OFF, ..balls(0.002) }],
+            colliders: vec![wall],
+            ..frame(1, physical(24.0))
+        };
+        let report = solver.step(&input, &mut ());
+        assert_eq!((report.births_refused, report.pairs_unresolved), (0, 0));
+    }
+    let height = at(4.0)[0].y;
+    places(&solver).iter().map(|place| place.y - height).collect()
+}
+
+// EVIDENCE: N2.3-4  nothing passes through a collider, from its first moment on
+#[test]
+fn a_particle_that_is_born_at_high_speed_beside_a_surface_does_not_pass_it() {
+    for (obstacle, speed) in [("wall", 0.0), ("wall", 2.4), ("wall", -2.4), ("ground", 0.0)] {
+        let heights = heights_above(obstacle, speed);
+        assert_eq!(heights.len(), 38);
+        assert!(heights.iter().all(|&height| height > 0.0), "{obstacle} at {speed} m/s: {heights:?}");
+    }
+    assert!(heights_above("nothing", 0.0).iter().all(|&height| height < 0.0), "nothing is in the way");
+}
