@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::math::{Lanes, Real};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
@@ -21,16 +22,33 @@ pub struct Chunk {
     /// Pairs with walls that can move, and the end of each particle's.
     wall_pairs: Vec<Pair>,
     wall_ends: Vec<u32>,
-    /// Candidates of one particle.
-    near: Vec<Near>,
+    /// Particles within reach of one, itself among them, by their places in the sorted order.
+    near: Vec<u32>,
 }
 
-/// A candidate: from it to the particle, the squared length of that, and its place in the sorted order.
-#[derive(Debug, Clone, Copy, Default)]
-struct Near {
-    apart: [f32; 3],
-    square: f32,
-    other: u32,
+/// Four distances of a particle.
+type Four = <f32 as Real>::Lanes;
+/// The lanes of each mask of four, in order; what follows them is overwritten.
+const LANES: [[u32; 4]; 16] = lanes_of_masks();
+
+/// The number of lanes of each mask.
+const COUNTS: [usize; 16] = [0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4];
+
+const fn lanes_of_masks() -> [[u32; 4]; 16] {
+    let mut table = [[0; 4]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 4 {
+            if mask >> lane & 1 == 1 {
+                table[mask][count] = lane;
+                count += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
 }
 
 /// The neighbours of all particles; lengths in rest distances.
@@ -40,6 +58,8 @@ pub struct Neighbours {
     pub grid: CellGrid,
     /// Positions in the sorted order.
     pub positions: Vec<[f32; 4]>,
+    /// The same by axis, with three more places at the end.
+    columns: [Vec<f32>; 3],
     /// Pairs by task.
     pub chunks: Vec<Chunk>,
     /// Density of each particle, and the sum of the gradients of its pairs and walls.
@@ -59,19 +79,24 @@ impl Neighbours {
         self.positions.clear();
         let sorted = self.grid.order().iter().map(|&particle| positions[particle as usize]);
         self.positions.extend(sorted.map(|[x, y, z]| [x, y, z, 0.0]));
+        for (axis, column) in self.columns.iter_mut().enumerate() {
+            column.clear();
+            column.extend(self.positions.iter().map(|place| place[axis]));
+            column.resize(positions.len() + 3, 0.0);
+        }
         let count = positions.len();
         self.chunks.resize_with(count.div_ceil(CHUNK as usize), Chunk::default);
         self.sums.clear();
         self.sums.resize(count, [0.0; 4]);
         let (chunks, sums) = (DisjointSlice::new(&mut self.chunks), DisjointSlice::new(&mut self.sums));
-        let (grid, positions) = (&self.grid, &self.positions);
+        let (grid, positions, columns) = (&self.grid, &self.positions, &self.columns);
         pool.parallel_for(count.div_ceil(CHUNK as usize), |task| {
             let range = chunk_range(task, count);
             // SAFETY: chunks do not overlap.
             #[allow(unsafe_code)]
             let (chunk, sums) =
                 unsafe { (&mut chunks.run(task as u32..task as u32 + 1)[0], sums.run(range.clone())) };
-            chunk.find(grid, positions, range.clone(), sums);
+            chunk.find(grid, (positions, columns), range.clone(), sums);
             chunk.find_walls(walls, &positions[range.start as usize..range.end as usize], sums);
         });
     }
@@ -118,30 +143,27 @@ impl Neighbours {
 }
 
 impl Chunk {
-    fn find(&mut self, grid: &CellGrid, positions: &[[f32; 4]], range: Range<u32>, sums: &mut [[f32; 4]]) {
+    fn find(
+        &mut self,
+        grid: &CellGrid,
+        (positions, columns): (&[[f32; 4]], &[Vec<f32>; 3]),
+        range: Range<u32>,
+        sums: &mut [[f32; 4]],
+    ) {
         self.pairs.clear();
         self.ends.clear();
         for (at, out) in range.zip(sums) {
             let [x, y, z, _] = positions[at as usize];
-            // Candidates are written all, and those that are too far overwritten: this needs no branch.
-            let mut near = 0;
-            for run in grid.runs([x, y, z]) {
-                if self.near.len() < near + run.len() {
-                    self.near.resize(near + run.len(), Near::default());
-                }
-                for (other, place) in (run.start as u32..).zip(&positions[run]) {
-                    let apart = [x - place[0], y - place[1], z - place[2]];
-                    let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                    self.near[near] = Near { apart, square, other };
-                    near += usize::from((square < REACH * REACH) & (other != at));
-                }
-            }
+            let near = self.find_near(grid, columns, [x, y, z]);
             let mut sum = [weight(0.0), 0.0, 0.0, 0.0];
-            self.pairs.extend(self.near[..near].iter().map(|&Near { apart, square, other }| {
-                let distance = square.sqrt();
+            let others = self.near[..near].iter().filter(|&&other| other != at);
+            self.pairs.extend(others.map(|&other| {
+                let place = positions[other as usize];
+                let apart = [x - place[0], y - place[1], z - place[2]];
+                let distance = (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]).sqrt();
                 // Two particles in one place have no direction: they part along that of the others.
                 let scale = if distance > 1e-6 { slope(distance) / distance } else { 0.0 };
-                let gradient = apart.map(|x| x * scale);
+                let gradient = [apart[0] * scale, apart[1] * scale, apart[2] * scale];
                 sum[0] += weight(distance);
                 (0..3).for_each(|axis| sum[axis + 1] += gradient[axis]);
                 Pair { gradient, other }
@@ -149,6 +171,30 @@ impl Chunk {
             self.ends.push(self.pairs.len() as u32);
             *out = sum;
         }
+    }
+
+    /// Lists the particles within reach of a place, four at a time. Returns their number.
+    fn find_near(&mut self, grid: &CellGrid, columns: &[Vec<f32>; 3], place: [f32; 3]) -> usize {
+        let (at, reach) = (place.map(Four::splat), Four::splat(REACH * REACH));
+        let mut near = 0;
+        for run in grid.runs(place) {
+            // Four are written at a time, and those that are too far overwritten: this needs no branch.
+            if self.near.len() < near + run.len() + 4 {
+                self.near.resize(near + run.len() + 4, 0);
+            }
+            for first in run.clone().step_by(4) {
+                let apart = |axis: usize| at[axis] - four(&columns[axis], first);
+                let [x, y, z] = [apart(0), apart(1), apart(2)];
+                let within = (reach - (x * x + y * y + z * z)).above_zero();
+                let mask = within & (0xf >> 4usize.saturating_sub(run.end - first));
+                let lanes = &LANES[mask as usize];
+                for (slot, lane) in self.near[near..near + 4].iter_mut().zip(lanes) {
+                    *slot = first as u32 + lane;
+                }
+                near += COUNTS[mask as usize];
+            }
+        }
+        near
     }
 
     fn find_walls(&mut self, walls: &Walls, positions: &[[f32; 4]], sums: &mut [[f32; 4]]) {
@@ -163,4 +209,11 @@ impl Chunk {
             self.wall_ends.push(self.wall_pairs.len() as u32);
         }
     }
+}
+
+/// Four numbers of a column from a place on.
+#[inline(always)]
+fn four(column: &[f32], first: usize) -> Four {
+    let four = &column[first..first + 4];
+    Four::from_array([four[0], four[1], four[2], four[3]])
 }
