@@ -1,6 +1,7 @@
 //! The report of a frame: counters of its contacts, and strain, gaps and energy at its end. A step cannot fail;
 //! whatever it could not satisfy is counted here.
 
+use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 
 use nalgebra::Vector3;
@@ -17,8 +18,8 @@ use crate::contact::system::ContactSystem;
 use crate::contact::time_step::{ColliderStepArgs, ContactCounters};
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
 use crate::math::{Real, dot};
+use crate::model::ClothModel;
 use crate::model::rows::RowList;
-use crate::model::{ClothModel, Model};
 use crate::output::StepReport;
 use crate::schedule::Schedule;
 use crate::schedule::resistance::PhysicalStiffness;
@@ -37,11 +38,11 @@ pub fn report<R: Real>(
     counters: &ContactCounters,
 ) -> StepReport {
     let (max_strain, strain_99) = strains(&solver.model.cloths, &solver.state, frame);
-    let (kinetic_energy, finite) = kinetic_energy(&solver.model.cloths, &solver.state);
+    let points = PointFigures::of(&solver.model.cloths, &solver.state, frame);
     StepReport {
         max_strain,
         strain_99,
-        min_gap: smallest_gap(solver, frame, schedule),
+        min_gap: smallest_gap(solver, points.ground_gap, schedule),
         min_cloth_gap: smallest_cloth_gap(solver),
         rest_limited: solver
             .contact
@@ -77,8 +78,8 @@ pub fn report<R: Real>(
         deaths: counters.deaths,
         births_refused: counters.births_refused,
         density_error: solver.liquids.iter().map(LiquidSolver::density_error).fold(0.0, f64::max),
-        kinetic_energy,
-        finite,
+        kinetic_energy: points.kinetic_energy,
+        finite: points.finite,
         ..StepReport::default()
     }
 }
@@ -213,17 +214,52 @@ fn bending<R: Real, const N: usize>(state: &State<R>, group: &HingeGroup<R, N>, 
     dot(c, c).sqrt().to_f64()
 }
 
-/// The kinetic energy in joules, and whether every position and velocity is finite.
-fn kinetic_energy<R: Real>(cloths: &[ClothModel<R>], state: &State<R>) -> (f64, bool) {
-    let mut energy = 0.0;
-    let mut finite = true;
-    for row in cloths.iter().flat_map(ClothModel::points) {
-        let v = state.seen_velocity(row);
-        let row = row as usize;
-        energy += dot(v, v) / (2.0 * state.inverse_mass[row].to_f64());
-        finite &= state.displacement[row].xyz().iter().all(|x| x.to_f64().is_finite());
+/// What the report says of all points, from one pass over them.
+struct PointFigures {
+    /// In joules.
+    kinetic_energy: f64,
+    /// Whether every position and velocity is finite.
+    finite: bool,
+    /// The smallest height above the ground plane over the thickness.
+    ground_gap: f64,
+}
+
+impl PointFigures {
+    fn of<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> Self {
+        let mut figures = Self { kinetic_energy: 0.0, finite: true, ground_gap: f64::INFINITY };
+        let plane = frame.plane.as_ref();
+        let plane =
+            plane.map(|ground| (ground.origin, ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y)));
+        for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
+            let plane = plane.filter(|_| settings.collide && settings.thickness > 0.0);
+            let lowest = figures.add(cloth.points(), state, plane);
+            figures.ground_gap = figures.ground_gap.min(lowest / settings.thickness);
+        }
+        figures.finite &= figures.kinetic_energy.is_finite();
+        figures
     }
-    (energy, finite && energy.is_finite())
+
+    /// Adds the points of a cloth. Returns the smallest height in metres of those that are not pinned above a plane, which is
+    /// given by its origin and its normal.
+    fn add<R: Real>(
+        &mut self,
+        points: Range<u32>,
+        state: &State<R>,
+        plane: Option<(Vector3<f64>, Vector3<f64>)>,
+    ) -> f64 {
+        let mut lowest = f64::INFINITY;
+        for (row, v) in points.clone().zip(state.seen_velocities(points)) {
+            let displacement = state.displacement[row as usize];
+            self.kinetic_energy += dot(v, v) / (2.0 * state.inverse_mass[row as usize].to_f64());
+            self.finite &= displacement.xyz().iter().all(|x| x.to_f64().is_finite());
+            if let Some((origin, normal)) = plane
+                && displacement.0[3] > R::ZERO
+            {
+                lowest = lowest.min((Vector3::from(state.position(row)) - origin).dot(&normal));
+            }
+        }
+        lowest
+    }
 }
 
 /// The smallest gap ratio of two elements of cloth.
@@ -241,18 +277,17 @@ fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
     gap_ratio.map_or(f64::INFINITY, R::to_f64)
 }
 
-/// The smallest gap ratio to a collider or the ground plane.
-fn smallest_gap<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> f64 {
+/// The smallest gap ratio to a collider or the ground plane, given that to the ground.
+fn smallest_gap<R: Real>(solver: &mut Solver<R>, ground_gap: f64, schedule: &Schedule<R>) -> f64 {
     let Solver {
         state,
-        model: Model { cloths, .. },
         contact:
             ContactSystem {
                 collider_states, collider_contacts, collider_materials, material_maps, free_gap, ..
             },
         ..
     } = solver;
-    let mut least = smallest_ground_gap(cloths, state, frame).min(*free_gap);
+    let mut least = ground_gap.min(*free_gap);
     for list in collider_contacts.iter() {
         let Some(material) = collider_materials[list.cloth * collider_states.len() + list.collider] else {
             continue;
@@ -270,18 +305,6 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, schedule: &
         least = distances.fold(least, f64::min);
     }
     least
-}
-
-fn smallest_ground_gap<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> f64 {
-    let Some(ground) = &frame.plane else { return f64::INFINITY };
-    let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
-    let height = |row| (Vector3::from(state.position(row)) - ground.origin).dot(&normal);
-    let touching = |(_, settings): &(_, &ClothFrame)| settings.collide && settings.thickness > 0.0;
-    let of_cloth = |(cloth, settings): (&ClothModel<R>, &ClothFrame)| {
-        let free = cloth.points().filter(|&row| state.displacement[row as usize].0[3] > R::ZERO);
-        free.map(height).fold(f64::INFINITY, f64::min) / settings.thickness
-    };
-    cloths.iter().zip(&frame.cloths).filter(touching).map(of_cloth).fold(f64::INFINITY, f64::min)
 }
 
 /// A row's factor on the stiffness of its cloth.

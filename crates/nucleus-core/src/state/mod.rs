@@ -8,6 +8,8 @@
 pub mod kinematics;
 pub mod start;
 
+use std::ops::Range;
+
 use crate::bytes::{HASH_SEED, hash_word};
 use crate::math::{Real, Row4, sub};
 use crate::particles::population::Population;
@@ -88,10 +90,27 @@ impl<R: Real> State<R> {
     /// The velocity of a point in m/s, for observers: where contacts displaced the point without velocity, its motion
     /// in the last time step. Resting cloth has a stored velocity there that contacts cancel in every step.
     pub fn seen_velocity(&self, row: u32) -> [f64; 3] {
-        if let Ok(at) = self.displaced.binary_search_by_key(&row, |&(row, _)| row) {
-            return self.displaced[at].1.map(R::to_f64);
+        match self.displaced.binary_search_by_key(&row, |&(row, _)| row) {
+            Ok(at) => self.displaced[at].1.map(R::to_f64),
+            Err(_) => self.velocity_or_motion(row as usize),
         }
-        let row = row as usize;
+    }
+
+    /// [`seen_velocity`](Self::seen_velocity) of each point of a range.
+    pub fn seen_velocities(&self, rows: Range<u32>) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let mut next = self.displaced.partition_point(|&(row, _)| row < rows.start);
+        rows.map(move |row| match self.displaced.get(next) {
+            Some(&(at, motion)) if at == row => {
+                next += 1;
+                motion.map(R::to_f64)
+            }
+            _ => self.velocity_or_motion(row as usize),
+        })
+    }
+
+    /// The velocity of a point, or its motion where the columns of depenetration hold any.
+    #[inline(always)]
+    fn velocity_or_motion(&self, row: usize) -> [f64; 3] {
         let is_depenetrated =
             |column: &[Row4<R>]| column.get(row).is_some_and(|row| row.xyz() != [R::ZERO; 3]);
         if is_depenetrated(&self.depenetration_by_collider) || is_depenetrated(&self.depenetration_by_cloth) {
