@@ -9,7 +9,7 @@ use crate::input::frame::COUNT_PERIOD;
 use crate::math::{Real, add, dot, max, scale, sub};
 
 /// Speed in m/s at which contact resolves a depth that existed before the step.
-const DEPENETRATION_SPEED: f64 = 1.0;
+pub(super) const DEPENETRATION_SPEED: f64 = 1.0;
 
 /// A push along the contact normal, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ pub fn coulomb_correction<R: Real>(
     let sliding = along(motion);
     let length = dot(sliding, sliding).sqrt();
     let share = if length <= limit { R::ONE } else { limit / length };
-    [sliding, along(depenetration)].map(|x| scale(x, -share))
+    [scale(sliding, -share), scale(along(depenetration), -share)]
 }
 
 /// `x` between zero and `most`.
@@ -159,8 +159,8 @@ impl<R: Real> Restitution<R> {
 
     /// The velocity after collision with a surface of this normal and velocity.
     pub fn velocity_after(&self, impact: &Impact<R>, normal: [R; 3], surface: [R; 3]) -> [R; 3] {
-        let now: [R; 3] = std::array::from_fn(|axis| impact.velocity[axis] - surface[axis]);
-        let pushed: [R; 3] = std::array::from_fn(|axis| impact.displacement[axis] - impact.predicted[axis]);
+        let now = sub(impact.velocity, surface);
+        let pushed = sub(impact.displacement, impact.predicted);
         let speed = dot(normal, now);
         let before = speed - dot(normal, pushed) / self.h;
         let after = -(self.coefficient * before);
