@@ -183,6 +183,59 @@ impl Bvh {
         self.descend(|bounds| bounds.overlaps(target), found);
     }
 
+    /// Calls `found` with each target and each element whose leaf overlaps it. The elements of a target come in the order of
+    /// [`query`](Self::query). All targets go down the hierarchy together, so that each of its boxes is read once; `lists`
+    /// is scratch memory.
+    pub fn query_all(&self, targets: &[Aabb], lists: &mut Vec<u32>, mut found: impl FnMut(u32, u32)) {
+        lists.clear();
+        lists.extend(0..targets.len() as u32);
+        // A node, and the places in `lists` of the targets that overlap its parent: those of a child follow them.
+        let mut stack = [(0usize, [0usize; 2]); 64];
+        stack[0] = (0, [0, targets.len()]);
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let (node, [first, end]) = stack[depth];
+            let last = self.overlapping(node, targets, lists, [first, end]);
+            if end == last {
+                continue;
+            }
+            if node >= self.leaves - 1 {
+                let own = self.leaf(node);
+                lists[end..last].iter().for_each(|&target| own.iter().for_each(|&at| found(target, at)));
+            } else {
+                stack[depth] = (2 * node + 2, [end, last]);
+                stack[depth + 1] = (2 * node + 1, [end, last]);
+                depth += 2;
+            }
+        }
+    }
+
+    /// Lists the targets at some places of `lists` that overlap a node, from the end of these places on. Returns the end.
+    fn overlapping(
+        &self,
+        node: usize,
+        targets: &[Aabb],
+        lists: &mut Vec<u32>,
+        [first, end]: [usize; 2],
+    ) -> usize {
+        let bounds = self.nodes[node];
+        lists.resize(lists.len().max(2 * end - first), 0);
+        let (parents, own) = lists.split_at_mut(end);
+        let mut count = 0;
+        for &target in &parents[first..] {
+            own[count] = target;
+            count += usize::from(bounds.overlaps(&targets[target as usize]));
+        }
+        end + count
+    }
+
+    /// The elements of a leaf.
+    fn leaf(&self, node: usize) -> &[u32] {
+        let leaf = node - (self.leaves - 1);
+        &self.triangles[leaf * LEAF_SIZE..((leaf + 1) * LEAF_SIZE).min(self.triangles.len())]
+    }
+
     /// Calls `found` with each element of the leaves that `reaches` does not exclude, itself or by a box around it.
     pub fn descend(&self, reaches: impl Fn(&Aabb) -> bool, mut found: impl FnMut(u32)) {
         // Deeper than any hierarchy: one level for each bit of the number of leaves.
@@ -195,9 +248,7 @@ impl Bvh {
                 continue;
             }
             if node >= self.leaves - 1 {
-                let leaf = node - (self.leaves - 1);
-                let end = ((leaf + 1) * LEAF_SIZE).min(self.triangles.len());
-                self.triangles[leaf * LEAF_SIZE..end].iter().for_each(|&triangle| found(triangle));
+                self.leaf(node).iter().for_each(|&triangle| found(triangle));
             } else {
                 stack[depth] = 2 * node + 2;
                 stack[depth + 1] = 2 * node + 1;
@@ -248,6 +299,23 @@ mod tests {
             let meets = |[l, h]: &[Vector3<f64>; 2]| (0..3).all(|k| l[k] <= high[k] + 0.5 && low[k] - 0.5 <= h[k]);
             let all = (0..corners.len()).filter(|&k| meets(&corners[k]));
             prop_assert!(all.into_iter().all(|k| found.contains(&(k as u32))));
+        }
+
+        #[test]
+        fn targets_together_find_what_each_finds_alone_in_the_same_order(
+            corners in boxes(), seekers in boxes(),
+        ) {
+            let boxes: Vec<Aabb> = corners.iter().map(|&[low, high]| Aabb::new(low, high)).collect();
+            let mut bvh = Bvh::new(&corners.iter().map(|[low, high]| (low + high) / 2.0).collect::<Vec<_>>());
+            bvh.refit(|triangle| boxes[triangle]);
+            let targets: Vec<Aabb> = seekers.iter().map(|&[low, high]| Aabb::new(low, high).inflate(0.5)).collect();
+            let mut together = vec![Vec::new(); targets.len()];
+            bvh.query_all(&targets, &mut Vec::new(), |target, at| together[target as usize].push(at));
+            for (target, together) in targets.iter().zip(together) {
+                let mut alone = Vec::new();
+                bvh.query(target, |at| alone.push(at));
+                prop_assert_eq!(together, alone);
+            }
         }
     }
 }

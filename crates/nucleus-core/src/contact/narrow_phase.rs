@@ -1,6 +1,6 @@
 //! Narrow phase: the closest points of two elements of up to three points each.
 
-use crate::math::{Real, cross, dot, scale, sub, unit};
+use crate::math::{Real, add, cross, dot, scale, sub, unit};
 
 /// The positions of the points of two elements, in metres.
 pub type ElementPositions<R, const N: usize, const M: usize> = ([[R; 3]; N], [[R; 3]; M]);
@@ -43,7 +43,12 @@ pub fn cross_direction<R: Real, const N: usize, const M: usize>(x: [[R; 3]; N], 
 /// The point of an element with these weights.
 #[inline(always)]
 pub fn interpolate<R: Real, const K: usize>(points: [[R; 3]; K], weights: [R; K]) -> [R; 3] {
-    std::array::from_fn(|axis| (0..K).map(|k| points[k][axis] * weights[k]).sum())
+    // Loops, because sums over mapped ranges are not inlined.
+    let mut sum = scale(points[0], weights[0]);
+    for k in 1..K {
+        sum = add(sum, scale(points[k], weights[k]));
+    }
+    sum
 }
 
 /// The line from the centroid of their element to the centroid of ours.
@@ -56,8 +61,11 @@ pub fn between_centroids<R: Real, const N: usize, const M: usize>(
 
 #[inline(always)]
 fn centroid<R: Real, const K: usize>(points: &[[R; 3]; K]) -> [R; 3] {
-    let share = R::from_f64(1.0 / K as f64);
-    std::array::from_fn(|axis| (0..K).map(|k| points[k][axis]).sum::<R>() * share)
+    let mut sum = points[0];
+    for k in 1..K {
+        sum = add(sum, points[k]);
+    }
+    scale(sum, R::from_f64(1.0 / K as f64))
 }
 
 /// The smallest gap along a direction: the least of our points minus the greatest of theirs.

@@ -189,6 +189,8 @@ pub struct ColliderStep<'a, R> {
     pub material_maps: &'a MaterialMaps<R>,
     /// Those of the collider, if it has any.
     pub collider_maps: Option<&'a ColliderMaps>,
+    /// Whether the points are free: a plane along the way of one then certifies that it misses a face.
+    pub of_free_points: bool,
 }
 
 impl<R: Real> ColliderStep<'_, R> {
@@ -229,13 +231,21 @@ impl<R: Real> ColliderStep<'_, R> {
     /// The cloth's points at the start and at the end of the step.
     #[inline]
     pub(in crate::contact) fn cloth_positions<const N: usize>(&self, points: [u32; N]) -> [[Point; N]; 2] {
-        let end = std::array::from_fn(|k| self.position(points[k], self.row(points[k]).xyz()));
+        let mut end = [Point::zeros(); N];
+        for k in 0..N {
+            end[k] = self.position(points[k], self.row(points[k]).xyz());
+        }
         [self.cloth_start_positions(points), end]
     }
 
     #[inline]
     pub(in crate::contact) fn cloth_start_positions<const N: usize>(&self, points: [u32; N]) -> [Point; N] {
-        std::array::from_fn(|k| self.position(points[k], self.start(points[k])))
+        // Loops, because maps over these arrays are not inlined.
+        let mut start = [Point::zeros(); N];
+        for k in 0..N {
+            start[k] = self.position(points[k], self.start(points[k]));
+        }
+        start
     }
 
     /// Whether collisions of a point are carried out in full.
@@ -281,16 +291,37 @@ impl<R: Real> ColliderStep<'_, R> {
         frame_travel: [R; 3],
     ) -> f64 {
         let frame_travel = Point::from(frame_travel.map(R::to_f64));
-        let squared = |point: u32| {
-            let [start, end] = self.collider.map(|points| points[point as usize]);
-            (end - start - frame_travel).norm_squared()
-        };
-        points.map(squared).into_iter().fold(0.0, f64::max).sqrt() * (self.interval[1] - self.interval[0])
+        let mut most = 0.0f64;
+        for point in points {
+            let [start, end] = [self.collider[0][point as usize], self.collider[1][point as usize]];
+            most = most.max((end - start - frame_travel).norm_squared());
+        }
+        most.sqrt() * (self.interval[1] - self.interval[0])
     }
 
     #[inline(always)]
     pub(in crate::contact) fn row(&self, point: u32) -> Row4<R> {
         self.writer.row(point)
+    }
+
+    /// The displacements of some points at the end of the step, and at its start.
+    #[inline(always)]
+    pub(in crate::contact) fn displacements<const N: usize>(&self, points: [u32; N]) -> [[R; 3]; N] {
+        // Loops, because maps over arrays are not inlined.
+        let mut displacements = [[R::ZERO; 3]; N];
+        for k in 0..N {
+            displacements[k] = self.row(points[k]).xyz();
+        }
+        displacements
+    }
+
+    #[inline(always)]
+    pub(in crate::contact) fn start_displacements<const N: usize>(&self, points: [u32; N]) -> [[R; 3]; N] {
+        let mut displacements = [[R::ZERO; 3]; N];
+        for k in 0..N {
+            displacements[k] = self.start(points[k]);
+        }
+        displacements
     }
 
     #[inline(always)]
@@ -301,7 +332,14 @@ impl<R: Real> ColliderStep<'_, R> {
     /// The collider's points at the start and at the end of the step.
     #[inline]
     pub fn collider_positions<const M: usize>(&self, points: [u32; M]) -> [[Point; M]; 2] {
-        std::array::from_fn(|end| std::array::from_fn(|k| self.collider_position(points[k], self.time[end])))
+        let mut ends = [[Point::zeros(); M]; 2];
+        for k in 0..M {
+            let [start, end] = [self.collider[0][points[k] as usize], self.collider[1][points[k] as usize]];
+            let travel = end - start;
+            ends[0][k] = start + travel * self.time[0];
+            ends[1][k] = start + travel * self.time[1];
+        }
+        ends
     }
 
     /// The largest n·q of some points of the collider, at the start and at the end of the candidate interval.
@@ -309,7 +347,7 @@ impl<R: Real> ColliderStep<'_, R> {
     pub(in crate::contact) fn support(&self, normal: Point, points: &[u32]) -> [f64; 2] {
         let (mut support, mut moves) = ([f64::NEG_INFINITY; 2], false);
         for &point in points {
-            let [start, end] = self.collider.map(|points| points[point as usize]);
+            let [start, end] = [self.collider[0][point as usize], self.collider[1][point as usize]];
             moves |= start != end;
             support[0] = support[0].max(normal.dot(&(start + (end - start) * self.interval[0])));
         }
@@ -324,7 +362,7 @@ impl<R: Real> ColliderStep<'_, R> {
     /// A point of the collider at a time of the frame.
     #[inline]
     pub(in crate::contact) fn collider_position(&self, point: u32, time: f64) -> Point {
-        let [start, end] = self.collider.map(|points| points[point as usize]);
+        let [start, end] = [self.collider[0][point as usize], self.collider[1][point as usize]];
         start + (end - start) * time
     }
 }
@@ -377,6 +415,7 @@ impl<R: Real> ColliderStepArgs<'_, R> {
             material: self.material,
             material_maps: self.material_maps,
             collider_maps: self.material_maps.of_collider(self.at),
+            of_free_points: false,
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4};
 use crate::model::Model;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::particles::free_run::FreePass;
+use crate::particles::free_pass::FreePass;
 use crate::schedule::TimeStep;
 use crate::state::State;
 

@@ -9,155 +9,32 @@
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-use crate::contact::collider::near_points::{NearCollider, NearPoints};
-use crate::contact::ground::{GroundContact, GroundStep};
-use crate::contact::material::ContactMaterial;
+use crate::contact::collider::near_collider::NearCollider;
+use crate::contact::collider::near_points::NearPoints;
+use crate::contact::ground::GroundContact;
 use crate::contact::response::{Impact, Restitution};
-use crate::contact::system::ContactSystem;
-use crate::contact::time_step::{ColliderStep, ColliderStepArgs, PositionWriter};
-use crate::integrate::predict::{MotionColumns, Prediction};
-use crate::math::{Lanes, Real, Row4, sub};
-use crate::model::Model;
-use crate::parallel::disjoint::DisjointSlice;
-use crate::schedule::{Pass, TimeStep};
-use crate::state::State;
+use crate::contact::time_step::{ColliderStep, PositionWriter};
+use crate::math::{Lanes, Real, Row4, add, sub};
+use crate::particles::free_pass::FreePass;
 
-/// Points of a run: their buffers fit into the nearest cache.
-const RUN: usize = 128;
 /// Turns of colliders and the ground at a point that they push into each other.
 const TURNS: usize = 8;
 /// Attempts of the safeguard to push, to push with a smaller and smaller share of the thickness, to move a point with the
 /// surface and off the ground, and to move it with the surface alone.
 const ATTEMPTS: [usize; 4] = [4, 6, 4, 4];
 
-/// The buffers of a run of points.
-struct Buffers<R> {
-    start: [Row4<R>; RUN],
-    predicted: [Row4<R>; RUN],
-    by_collider: [Row4<R>; RUN],
-    by_cloth: [Row4<R>; RUN],
-    heights: [[R; RUN]; 2],
-}
-
-impl<R: Real> Buffers<R> {
-    fn new() -> Self {
-        let rows = [Row4::ZERO; RUN];
-        let heights = [[R::ZERO; RUN]; 2];
-        Self { start: rows, predicted: rows, by_collider: rows, by_cloth: rows, heights }
-    }
-}
-
-/// A time step of the points of one object.
-pub struct FreePass<'a, R: Real> {
-    cloth: usize,
-    model: &'a Model<R>,
-    contact: &'a ContactSystem<R>,
-    now: &'a TimeStep<'a, R>,
-    prediction: Prediction<'a, R>,
-    anchors: &'a [[f64; 3]],
-    plane: Option<(GroundStep<'a, R>, ContactMaterial<R>)>,
-    has_colliders: bool,
-    /// Sweeps over the contacts.
-    sweeps: usize,
-    /// Restitution without its coefficient.
-    restitution: Restitution<R>,
-    /// Length of the frame in seconds.
-    frame: f64,
-}
-
 /// A run of points within a task.
-struct Run<'a, R: Real> {
-    pass: &'a FreePass<'a, R>,
-    rows: Range<u32>,
-    writer: PositionWriter<'a, R>,
-    start: &'a [Row4<R>],
-    heights: [&'a [R]; 2],
-}
-
-impl<'a, R: Real> FreePass<'a, R> {
-    /// The time step `now` of an object, by its index.
-    pub fn new(
-        cloth: usize,
-        (model, state, contact): (&'a Model<R>, &'a mut State<R>, &'a ContactSystem<R>),
-        now: &'a TimeStep<'a, R>,
-    ) -> Self {
-        let h = now.schedule.h;
-        let columns = MotionColumns {
-            displacement: DisjointSlice::new(&mut state.displacement),
-            velocity: DisjointSlice::new(&mut state.velocity),
-            normal: &state.normal,
-            added_wind: &state.added_wind,
-            field: &state.field,
-        };
-        let min_speed = R::from_f64(2.0 * now.frame.gravity.norm() * h);
-        Self {
-            cloth,
-            model,
-            contact,
-            now,
-            prediction: Prediction::new(columns, &model.cloths[cloth], now, cloth),
-            anchors: &state.anchor,
-            plane: contact.ground.in_step(now.span).zip(contact.ground_materials[cloth]),
-            has_colliders: contact.has_collider_material(cloth),
-            sweeps: now.schedule.passes.iter().filter(|pass| **pass == Pass::ColliderContact).count(),
-            restitution: Restitution { coefficient: R::ZERO, min_speed, h: R::from_f64(h) },
-            frame: now.frame.duration,
-        }
-    }
-
-    /// All stages of the time step for the points of a task.
-    pub fn advance(&self, points: Range<u32>, near: &mut NearPoints<R>) {
-        let mut buffers = Buffers::new();
-        near.begin();
-        for first in points.clone().step_by(RUN) {
-            self.advance_run(first..points.end.min(first + RUN as u32), &mut buffers, near);
-        }
-        if near.counters.contacts.load(Ordering::Relaxed) > 0 {
-            self.contact.has_touched[self.cloth].store(true, Ordering::Relaxed);
-        }
-    }
-
-    fn advance_run(&self, rows: Range<u32>, buffers: &mut Buffers<R>, near: &mut NearPoints<R>) {
-        let Buffers { start, predicted, by_collider, by_cloth, heights: [at_start, at_end] } = buffers;
-        let (count, displacement) = (rows.len(), self.prediction.columns.displacement);
-        // SAFETY: tasks do not overlap, nor do their runs.
-        #[allow(unsafe_code)]
-        unsafe {
-            start[..count].copy_from_slice(displacement.run(rows.clone()));
-            self.prediction.move_points(rows.clone(), &mut predicted[..count]);
-        }
-        if self.plane.is_none() && !self.has_colliders {
-            return;
-        }
-        by_collider[..count].fill(Row4::ZERO);
-        by_cloth[..count].fill(Row4::ZERO);
-        let anchors = &self.anchors[rows.start as usize..rows.end as usize];
-        self.contact.ground.heights_of(anchors, [&mut at_start[..count], &mut at_end[..count]]);
-        let writer =
-            PositionWriter::of_run(displacement, [by_collider, by_cloth], &predicted[..count], rows.start);
-        let heights = [&at_start[..count], &at_end[..count]];
-        Run { pass: self, writer, rows, start: &start[..count], heights }.advance(near);
-    }
-
-    /// The colliders that the points can touch, with their places.
-    fn colliders(&self) -> impl Iterator<Item = (usize, NearCollider<'_, R>)> {
-        let (contact, span) = (self.contact, self.now.span);
-        let (h, time) = (self.now.schedule.h, [span.from, span.to]);
-        let lists = &contact.collider_contacts[contact.lists_of(self.cloth)];
-        let near = lists.iter().filter_map(move |list| {
-            let (at, material_maps) = (list.collider, &contact.material_maps);
-            let material = contact.collider_materials_of(self.cloth)[at]?;
-            let args = ColliderStepArgs { material, material_maps, at, h, time, interval: time };
-            let (model, state) = (&self.model.colliders[at], &contact.collider_states[at]);
-            Some(NearCollider::new(args, model, state, &list.depenetration, list.is_near))
-        });
-        near.enumerate()
-    }
+pub struct Run<'a, R: Real> {
+    pub(super) pass: &'a FreePass<'a, R>,
+    pub(super) rows: Range<u32>,
+    pub(super) writer: PositionWriter<'a, R>,
+    pub(super) start: &'a [Row4<R>],
+    pub(super) heights: [&'a [R]; 2],
 }
 
 impl<R: Real> Run<'_, R> {
     /// The stages behind the move.
-    fn advance(&self, near: &mut NearPoints<R>) {
+    pub(super) fn advance(&self, near: &mut NearPoints<R>) {
         let contacts = near.counters.contacts.load(Ordering::Relaxed);
         near.begin_run();
         self.touch(near);
@@ -213,20 +90,23 @@ impl<R: Real> Run<'_, R> {
         }
     }
 
-    /// The box around the motion of all points in this step, in metres.
+    /// A box around the motion of all points in this step, in metres: around their anchors, and around their displacements.
     fn bound(&self) -> [[f64; 3]; 2] {
-        let mut bound = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         let anchors = &self.pass.anchors[self.rows.start as usize..self.rows.end as usize];
-        for ((anchor, start), point) in anchors.iter().zip(self.start).zip(self.rows.clone()) {
-            for place in [start.xyz(), self.writer.row(point).xyz()] {
-                for axis in 0..3 {
-                    let x = anchor[axis] + place[axis].to_f64();
-                    bound[0][axis] = if x < bound[0][axis] { x } else { bound[0][axis] };
-                    bound[1][axis] = if x > bound[1][axis] { x } else { bound[1][axis] };
-                }
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for anchor in anchors {
+            for axis in 0..3 {
+                low[axis] = if anchor[axis] < low[axis] { anchor[axis] } else { low[axis] };
+                high[axis] = if anchor[axis] > high[axis] { anchor[axis] } else { high[axis] };
             }
         }
-        bound
+        let mut moved = [self.start[0].lanes(); 2];
+        for (start, point) in self.start.iter().zip(self.rows.clone()) {
+            let (start, end) = (start.lanes(), self.writer.row(point).lanes());
+            moved = [moved[0].least(start).least(end), moved[1].most(start).most(end)];
+        }
+        let moved = moved.map(|lanes| Row4(lanes.to_array()).xyz().map(R::to_f64));
+        [add(low, moved[0]), add(high, moved[1])]
     }
 
     /// Pushes the points above the ground, after adhesion. Without adhesion one sweep is exact.
@@ -385,7 +265,8 @@ impl<R: Real> Run<'_, R> {
 
     /// The time step of the run and a collider.
     fn step<'s>(&'s self, collider: &'s NearCollider<'_, R>) -> ColliderStep<'s, R> {
-        collider.args.with_columns((self.writer, self.start, self.pass.anchors), collider.state())
+        let columns = (self.writer, self.start, self.pass.anchors);
+        ColliderStep { of_free_points: true, ..collider.args.with_columns(columns, collider.state()) }
     }
 
     /// The contact of the run with the ground, with a factor on every thickness.

@@ -13,7 +13,7 @@
 //! | ages, lifespans and numbers | [`population`] |
 //! | births and deaths in the solver's columns | [`lifecycle`] |
 //! | new particles that a surface would be in the way of | [`first_way`] |
-//! | time steps of particles that depend on nothing but colliders | [`free`], then [`free_run`] |
+//! | time steps of particles that depend on nothing but colliders | [`free`], [`free_pass`], then [`free_run`] |
 //! | attributes that differ by particle | [`ramps`] |
 //! | what an observer draws of them | [`looks`] |
 //! | what happens at collisions | [`events`] |
@@ -24,6 +24,7 @@
 pub mod events;
 pub mod first_way;
 pub mod free;
+pub mod free_pass;
 pub mod free_run;
 pub mod lifecycle;
 pub mod looks;

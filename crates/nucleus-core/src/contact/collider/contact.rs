@@ -11,13 +11,13 @@ use std::sync::atomic::Ordering;
 use nalgebra::Vector3;
 
 use crate::bytes::{Encode, Reader};
-use crate::contact::ccd::separated_throughout;
 use crate::contact::collider::motion_bounds::{MotionBounds, squared_diagonal};
+use crate::contact::collider::separation::{best_plane, plane_along, separated};
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase;
 use crate::contact::time_step::{ColliderStep, ContactCounters};
-use crate::math::{Real, Row4, dot, max};
+use crate::math::{Real, Row4, add, dot, max, scale, sub};
 
 pub(super) type Point = Vector3<f64>;
 
@@ -139,13 +139,16 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         bounds: &MotionBounds<'_, R>,
     ) -> Option<Self> {
         let x = step.cloth_start_positions(points);
-        let q = collider_points.map(|point| step.collider_position(point, step.time[0]));
+        let [q, _] = step.collider_positions(collider_points);
         let (b, c) = closest(x, q);
         let line = interpolate(x, b) - interpolate(q, c);
         // Neither side moves farther than the diagonal of its bound.
         let range = step.interaction_range();
-        let ours = points.map(|point| squared_diagonal(&bounds.of(point)));
-        let ours = ours.into_iter().fold(R::ZERO, max).sqrt().to_f64();
+        let mut ours = R::ZERO;
+        for point in points {
+            ours = max(ours, squared_diagonal(&bounds.of(point)));
+        }
+        let ours = ours.sqrt().to_f64();
         let theirs = step.longest_travel(collider_points, bounds.frame_travel);
         if line.norm() > range.to_f64() + ours + theirs {
             return None;
@@ -165,8 +168,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             idle_until: [R::ZERO; N],
         };
         contact.set_plane_offsets(normal, step);
-        let ends = [(R::ZERO, step.interval[0]), (R::ONE, step.interval[1])];
-        let gap = contact.min_gap(ends.map(|(share, time)| (share, bounds.travel_at(time))), bounds);
+        let gap = contact.min_gap_in_interval(step, bounds);
         (gap < range).then(|| {
             contact.set_plane_origin((b, c), step);
             contact
@@ -222,18 +224,29 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// above the thickness cannot touch.
     #[inline(always)]
     pub fn min_gap<const W: usize>(&self, window: [(R, [R; 3]); W], bounds: &MotionBounds<'_, R>) -> R {
-        let window = window.map(|(share, frame_motion)| (share, dot(self.normal, frame_motion)));
+        // A loop, because maps over arrays are not inlined.
+        let mut motions = [(R::ZERO, R::ZERO); W];
+        for w in 0..W {
+            motions[w] = (window[w].0, dot(self.normal, window[w].1));
+        }
         let mut least = R::from_f64(f64::from(f32::MAX));
         for k in 0..N {
             let [low, high] = bounds.of(self.points[k]);
             let corner = |axis: usize| if self.normal[axis] > R::ZERO { low.0[axis] } else { high.0[axis] };
             let lowest = dot(self.normal, [corner(0), corner(1), corner(2)]);
-            for (share, frame_motion) in window {
+            for (share, frame_motion) in motions {
                 let gap = lowest + frame_motion - self.plane_at(k, share);
                 least = if gap < least { gap } else { least };
             }
         }
         least
+    }
+
+    /// The smallest gap over the motion bounds within the candidate interval.
+    #[inline(always)]
+    fn min_gap_in_interval(&self, step: &ColliderStep<'_, R>, bounds: &MotionBounds<'_, R>) -> R {
+        let [from, to] = [bounds.travel_at(step.interval[0]), bounds.travel_at(step.interval[1])];
+        self.min_gap([(R::ZERO, from), (R::ONE, to)], bounds)
     }
 
     /// Rebases the plane on anchors that move to the points' positions; the collider is at rest.
@@ -285,7 +298,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// The gap at the start of the step.
     #[inline(always)]
     pub(super) fn gap_at_start(&self, step: &ColliderStep<'_, R>) -> R {
-        self.gaps(self.points.map(|point| step.start(point)), step.shares[0]).0
+        self.gaps(step.start_displacements(self.points), step.shares[0]).0
     }
 
     /// Depenetration by colliders at the contact in this step, in metres.
@@ -298,11 +311,8 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     #[inline(always)]
     pub(super) fn plane_is_valid(&self, displacement: [[R; 3]; N], step: &ColliderStep<'_, R>) -> bool {
         let time = R::from_f64(step.time[1]);
-        let away: [R; 3] = std::array::from_fn(|axis| {
-            self.contact_displacement(displacement)[axis]
-                - self.surface_motion[axis] * time
-                - self.plane_origin[axis]
-        });
+        let displacement = self.contact_displacement(displacement);
+        let away = sub(sub(displacement, scale(self.surface_motion, time)), self.plane_origin);
         let most = step.thickness * R::from_f64(PLANE_VALIDITY);
         dot(away, away) <= most * most
     }
@@ -310,7 +320,11 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Displacement of the contact on the cloth.
     #[inline(always)]
     pub(super) fn contact_displacement(&self, displacement: [[R; 3]; N]) -> [R; 3] {
-        std::array::from_fn(|axis| (0..N).map(|k| self.weights[k] * displacement[k][axis]).sum())
+        let mut sum = scale(displacement[0], self.weights[0]);
+        for k in 1..N {
+            sum = add(sum, scale(displacement[k], self.weights[k]));
+        }
+        sum
     }
 
     /// Sets the plane through a contact, given by its normal and its weights.
@@ -341,14 +355,17 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Sets the weights of the contact, and the place where its plane was set.
     #[inline]
     fn set_plane_origin(&mut self, (b, c): ([f64; N], [f64; M]), step: &ColliderStep<'_, R>) {
-        let ends =
-            step.collider.map(|points| interpolate(self.collider_points.map(|q| points[q as usize]), c));
-        let motion = ends[1] - ends[0];
+        let mut ends = [[Point::zeros(); M]; 2];
+        for k in 0..M {
+            let point = self.collider_points[k] as usize;
+            (ends[0][k], ends[1][k]) = (step.collider[0][point], step.collider[1][point]);
+        }
+        let motion = interpolate(ends[1], c) - interpolate(ends[0], c);
         self.weights = b.map(R::from_f64);
         self.surface_motion = [motion.x, motion.y, motion.z].map(R::from_f64);
-        let contact = self.contact_displacement(self.points.map(|point| step.row(point).xyz()));
+        let contact = self.contact_displacement(step.displacements(self.points));
         let time = R::from_f64(step.time[1]);
-        self.plane_origin = std::array::from_fn(|axis| contact[axis] - self.surface_motion[axis] * time);
+        self.plane_origin = sub(contact, scale(self.surface_motion, time));
     }
 }
 
@@ -377,7 +394,7 @@ impl<R: Real> ColliderContact<R, 1, 3> {
         }
         let ahead = across * (height.signum() / length);
         let is_behind = faces[1].iter().any(|corner| ahead.dot(&(way[1] - corner)) < 0.0);
-        let aside = is_behind.then(|| plane_along(way, faces)).flatten();
+        let aside = is_behind.then(|| plane_along(way, faces, 0.0)).flatten();
         let zero = [R::ZERO; 3];
         let mut contact = Self {
             points: [point],
@@ -392,34 +409,9 @@ impl<R: Real> ColliderContact<R, 1, 3> {
         };
         contact.set_plane(aside.unwrap_or(ahead), ([1.0], [1.0 / 3.0; 3]), step);
         contact.plane_origin = [R::from_f64(NOWHERE); 3];
-        let ends = [(R::ZERO, step.interval[0]), (R::ONE, step.interval[1])];
-        let gap = contact.min_gap(ends.map(|(share, time)| (share, bounds.travel_at(time))), bounds);
+        let gap = contact.min_gap_in_interval(step, bounds);
         (gap < step.interaction_range()).then_some((contact, is_behind && aside.is_none()))
     }
-}
-
-/// A plane along the way of a point that has a face on its other side from the start to the end: the one with the largest
-/// gap of those through the way and parallel to an edge. For a face that does not turn there is one if the way misses the
-/// face between its corners.
-fn plane_along([start, end]: [Point; 2], [from, to]: [[Point; 3]; 2]) -> Option<Point> {
-    let middle = |corners: [Point; 3]| (corners[0] + corners[1] + corners[2]) / 3.0;
-    let way = (end - start) - (middle(to) - middle(from));
-    let gap = |normal: Point, place: Point, corners: [Point; 3]| {
-        normal.dot(&place)
-            - corners.map(|corner| normal.dot(&corner)).into_iter().fold(f64::NEG_INFINITY, f64::max)
-    };
-    let mut best = (0.0, None);
-    for k in 0..3 {
-        let edge = from[(k + 1) % 3] - from[k];
-        let Some(normal) = way.cross(&edge).try_normalize(f64::MIN_POSITIVE) else { continue };
-        // The third corner is on the other side of the plane through the edge.
-        let normal = if normal.dot(&(from[(k + 2) % 3] - from[k])) > 0.0 { -normal } else { normal };
-        let gap = gap(normal, start, from).min(gap(normal, end, to));
-        if gap > best.0 {
-            best = (gap, Some(normal));
-        }
-    }
-    best.1
 }
 
 /// The closest points of two elements, as weights.
@@ -433,20 +425,25 @@ pub(super) fn cross_direction<const N: usize, const M: usize>(x: [Point; N], q: 
 }
 
 pub(super) fn interpolate<const K: usize>(points: [Point; K], weights: [f64; K]) -> Point {
-    (0..K).map(|k| points[k] * weights[k]).sum()
+    let mut sum = Point::zeros();
+    for k in 0..K {
+        sum += points[k] * weights[k];
+    }
+    sum
 }
 
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Certifies the contact in this step; may set another plane that proves it.
     #[inline]
     pub fn certify(&mut self, step: &ColliderStep<'_, R>) -> Certificate {
-        let moved = self.points.map(|point| step.row(point).xyz());
-        let size = moved[0].into_iter().map(|x| if x > R::ZERO { x } else { -x }).sum::<R>();
+        let moved = step.displacements(self.points);
+        let [x, y, z] = moved[0].map(|x| if x > R::ZERO { x } else { -x });
+        let size = x + y + z;
         // Gaps within rounding error are computed in double precision.
         let rounding = (size + step.thickness) * (R::EPSILON * R::from_f64(16.0));
         let (_, at_end) = self.gaps(moved, step.shares[1]);
         // The plane may have been set at the end of this step, and prove nothing at its start.
-        let (_, at_start) = self.gaps(self.points.map(|point| step.start(point)), step.shares[0]);
+        let (_, at_start) = self.gaps(step.start_displacements(self.points), step.shares[0]);
         if (at_end > rounding && at_start > rounding) || self.may_interpenetrate(step) {
             return Certificate::Separated;
         }
@@ -502,35 +499,10 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         ];
         match best_plane(directions, cloth, surface) {
             Some((gap, normal)) if gap > 0.0 => self.set_plane(normal, at_start, step),
-            Some(_) if !separated(cloth, surface) => return Certificate::Unproven,
+            Some(_) if !separated(cloth, surface, step.of_free_points) => return Certificate::Unproven,
             None if at_end < R::ZERO => return Certificate::Inseparable,
             _ => {}
         }
         Certificate::Separated
     }
-}
-
-/// Whether the two are separated throughout the step, by subdivision.
-pub(super) fn separated<const N: usize, const M: usize>(
-    [x0, x1]: [[Point; N]; 2],
-    [q0, q1]: [[Point; M]; 2],
-) -> bool {
-    let at = |x: [Point; N], q: [Point; M]| (x.map(Into::into), q.map(Into::into));
-    separated_throughout([&at(x0, q0), &at(x1, q1)], [0.0; 2]).is_some()
-}
-
-/// Among some directions and their opposites, the one that separates the two at the start of the step with the
-/// largest gap at its end.
-pub(super) fn best_plane<const N: usize, const M: usize>(
-    directions: [Point; 4],
-    [x0, x1]: [[Point; N]; 2],
-    [q0, q1]: [[Point; M]; 2],
-) -> Option<(f64, Point)> {
-    let gap = |n: Point, x: &[Point], q: &[Point]| {
-        let least = x.iter().map(|x| n.dot(x)).fold(f64::INFINITY, f64::min);
-        least - q.iter().map(|q| n.dot(q)).fold(f64::NEG_INFINITY, f64::max)
-    };
-    let units = directions.into_iter().filter_map(|direction| direction.try_normalize(1e-12));
-    let planes = units.flat_map(|n| [n, -n]).filter(|&n| gap(n, &x0, &q0) > 0.0);
-    planes.map(|n| (gap(n, &x1, &q1), n)).max_by(|a, b| a.0.total_cmp(&b.0))
 }

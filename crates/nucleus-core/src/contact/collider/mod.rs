@@ -14,8 +14,11 @@
 //! | a sweep over them | [`sweep`] |
 //! | the planes of the active contacts, four at a time | [`plane_columns`] |
 //! | one contact: its separating plane, and its certificate | [`contact`] |
+//! | certificates for the motion of a time step | [`separation`] |
 //! | its push, friction, adhesion and restitution | [`response`] |
-//! | free points: contacts of one time step | [`near_points`] |
+//! | free points: which faces a run of them may touch | [`near_collider`], [`near_search`] |
+//! | their contacts in one time step | [`near_points`] |
+//! | sweeps over these, certificates and fallbacks | [`near_response`] |
 //! | fallbacks for points of a liquid or of links | [`free_points`] |
 //! | starts inside the contact thickness | [`start_gaps`] |
 //! | the passes of a time step | [`pass`] |
@@ -27,11 +30,15 @@ pub mod contacts;
 pub mod frame_start;
 pub mod free_points;
 pub mod motion_bounds;
+pub mod near_collider;
 pub mod near_points;
+mod near_response;
+pub mod near_search;
 pub mod pass;
 mod plane_columns;
 pub mod query;
 mod response;
+pub mod separation;
 pub mod start_gaps;
 pub mod sweep;
 

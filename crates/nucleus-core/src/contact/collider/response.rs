@@ -1,8 +1,9 @@
 //! Response of one contact with a collider: push, friction, adhesion, and the surface for restitution.
 
 use crate::contact::collider::contact::{
-    ColliderContact, Outcome, Point, best_plane, closest, cross_direction, interpolate, separated,
+    ColliderContact, Outcome, Point, closest, cross_direction, interpolate,
 };
+use crate::contact::collider::separation::{best_plane, separated};
 use crate::contact::material::{ContactMaterial, ContactPoints};
 use crate::contact::response::Restitution;
 use crate::contact::response::{Adhesion, Push, coulomb_correction};
@@ -36,7 +37,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Pushes the contact to its thickness. The caller passes points that no other task of the phase touches.
     #[inline]
     pub fn resolve(&mut self, step: &ColliderStep<'_, R>) -> Outcome {
-        let moved = self.points.map(|point| step.row(point).xyz());
+        let moved = step.displacements(self.points);
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
         let (gap, least) = self.gaps(moved, step.shares[1]);
         if least >= step.pushing_gap() {
@@ -84,7 +85,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             let Some((gap, normal)) = best_plane(directions, [x0, x1], [q0, q1]) else {
                 return Outcome::Inseparable;
             };
-            let passes = gap < 0.0 && !separated([x0, x1], [q0, q1]);
+            let passes = gap < 0.0 && !separated([x0, x1], [q0, q1], step.of_free_points);
             if passes && self.may_interpenetrate(step) {
                 return Outcome::Separated; // It is on the other side from now on.
             }
@@ -196,8 +197,8 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         if limit <= R::ZERO {
             return [[R::ZERO; 3]; 2];
         }
-        let start = self.contact_displacement(self.points.map(|point| step.start(point)));
-        let now = self.contact_displacement(self.points.map(|point| step.row(point).xyz()));
+        let start = self.contact_displacement(step.start_displacements(self.points));
+        let now = self.contact_displacement(step.displacements(self.points));
         let elapsed = R::from_f64(step.time[1] - step.time[0]);
         let motion: [R; 3] = std::array::from_fn(|axis| {
             now[axis] + along[axis] - start[axis] - self.surface_motion[axis] * elapsed
@@ -209,7 +210,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// The gap at the end of the step.
     pub fn gap(&self, step: &ColliderStep<'_, R>) -> R {
-        self.gaps(self.points.map(|point| step.row(point).xyz()), step.shares[1]).0
+        self.gaps(step.displacements(self.points), step.shares[1]).0
     }
 
     /// Applies adhesion between the cloth's element and the surface.
@@ -223,7 +224,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             friction: material.friction_at(step.material_maps, self.contact_points(weights)),
         };
         let rows = self.points.map(|point| step.row(point));
-        let start = self.points.map(|point| step.start(point));
+        let start = step.start_displacements(self.points);
         let (gap, _) = self.gaps(start, step.shares[0]);
         let (before, elapsed) = (self.normal.map(|n| n * gap), R::from_f64(step.time[1] - step.time[0]));
         let [from, to] =
@@ -251,7 +252,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 
     /// The normal, and the collider's velocity at the contact in m/s, if the two touch at the end of the step.
     pub fn touching_surface(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<([R; 3], [R; 3])> {
-        let moved = self.points.map(|point| step.row(point).xyz());
+        let moved = step.displacements(self.points);
         let (gap, _) = self.gaps(moved, step.shares[1]);
         let velocity = self.surface_motion.map(|x| x / R::from_f64(frame));
         Restitution::touches(gap, self.rest_gap(step, self.weights)).then_some((self.normal, velocity))
