@@ -23,18 +23,74 @@ const TURNS: usize = 8;
 /// surface and off the ground, and to move it with the surface alone.
 const ATTEMPTS: [usize; 4] = [4, 6, 4, 4];
 
+/// Points of a run: their buffers fit into the nearest cache.
+const RUN: usize = 128;
+
+/// The buffers of a run of points.
+struct Buffers<R> {
+    start: [Row4<R>; RUN],
+    predicted: [Row4<R>; RUN],
+    by_collider: [Row4<R>; RUN],
+    by_cloth: [Row4<R>; RUN],
+    heights: [[R; RUN]; 2],
+}
+
+impl<R: Real> Buffers<R> {
+    fn new() -> Self {
+        let rows = [Row4::ZERO; RUN];
+        let heights = [[R::ZERO; RUN]; 2];
+        Self { start: rows, predicted: rows, by_collider: rows, by_cloth: rows, heights }
+    }
+}
+
+impl<R: Real> FreePass<'_, R> {
+    /// All stages of the time step for the points of a task.
+    pub fn advance(&self, points: Range<u32>, near: &mut NearPoints<R>) {
+        let mut buffers = Buffers::new();
+        near.begin();
+        for first in points.clone().step_by(RUN) {
+            self.advance_run(first..points.end.min(first + RUN as u32), &mut buffers, near);
+        }
+        if near.counters.contacts.load(Ordering::Relaxed) > 0 {
+            self.contact.has_touched[self.cloth].store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn advance_run(&self, rows: Range<u32>, buffers: &mut Buffers<R>, near: &mut NearPoints<R>) {
+        let Buffers { start, predicted, by_collider, by_cloth, heights: [at_start, at_end] } = buffers;
+        let (count, displacement) = (rows.len(), self.prediction.columns.displacement);
+        // SAFETY: tasks do not overlap, nor do their runs.
+        #[allow(unsafe_code)]
+        unsafe {
+            start[..count].copy_from_slice(displacement.run(rows.clone()));
+            self.prediction.move_points(rows.clone(), &mut predicted[..count]);
+        }
+        if self.plane.is_none() && !self.has_colliders {
+            return;
+        }
+        by_collider[..count].fill(Row4::ZERO);
+        by_cloth[..count].fill(Row4::ZERO);
+        let anchors = &self.anchors[rows.start as usize..rows.end as usize];
+        self.contact.ground.heights_of(anchors, [&mut at_start[..count], &mut at_end[..count]]);
+        let writer =
+            PositionWriter::of_run(displacement, [by_collider, by_cloth], &predicted[..count], rows.start);
+        let heights = [&at_start[..count], &at_end[..count]];
+        Run { pass: self, writer, rows, start: &start[..count], heights }.advance(near);
+    }
+}
+
 /// A run of points within a task.
-pub struct Run<'a, R: Real> {
-    pub(super) pass: &'a FreePass<'a, R>,
-    pub(super) rows: Range<u32>,
-    pub(super) writer: PositionWriter<'a, R>,
-    pub(super) start: &'a [Row4<R>],
-    pub(super) heights: [&'a [R]; 2],
+struct Run<'a, R: Real> {
+    pass: &'a FreePass<'a, R>,
+    rows: Range<u32>,
+    writer: PositionWriter<'a, R>,
+    start: &'a [Row4<R>],
+    heights: [&'a [R]; 2],
 }
 
 impl<R: Real> Run<'_, R> {
     /// The stages behind the move.
-    pub(super) fn advance(&self, near: &mut NearPoints<R>) {
+    fn advance(&self, near: &mut NearPoints<R>) {
         let contacts = near.counters.contacts.load(Ordering::Relaxed);
         near.begin_run();
         self.touch(near);
