@@ -169,9 +169,7 @@ impl<W: Write + Seek> Recorder<W> {
         if looks.is_empty() {
             return Ok(());
         }
-        points::write_head(stamp, looks.len(), 0, false, &mut self.message);
-        write_looks(&looks, &mut self.message);
-        self.writer.send(stamp, channel, &self.message)
+        self.send_per_point(channel, stamp, looks.len(), |message| write_looks(&looks, message))
     }
 
     /// Writes the orientations of particles.
@@ -188,8 +186,20 @@ impl<W: Write + Seek> Recorder<W> {
         if orientations.is_empty() {
             return Ok(());
         }
-        points::write_head(stamp, orientations.len(), 0, false, &mut self.message);
-        shuffle(orientations.as_flattened(), &mut self.message);
+        let values = orientations.as_flattened();
+        self.send_per_point(channel, stamp, orientations.len(), |message| shuffle(values, message))
+    }
+
+    /// Sends a message of values per point, which `write` appends to its head.
+    fn send_per_point(
+        &mut self,
+        channel: u16,
+        stamp: &Stamp,
+        points: usize,
+        write: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<(), RecordError> {
+        points::write_head(stamp, points, 0, false, &mut self.message);
+        write(&mut self.message);
         self.writer.send(stamp, channel, &self.message)
     }
 
