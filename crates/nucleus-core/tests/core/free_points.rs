@@ -1,9 +1,9 @@
 //! Free points: particles without links that touch no other cloth, among colliders and on the ground.
 
-use crate::scenes::{Vec3, cuboid, frame, ground, physical, sphere, still};
+use crate::scenes::{Vec3, built, cuboid, frame, ground, physical, sphere, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, Faces, FrameInput,
-    GroundPlane, Mass, ModelBuilder, ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, Elements, Faces, FrameInput, GroundPlane, Mass,
+    ModelBuilder, ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
 };
 
 const SPRAY: ClothId = ClothId(0);
@@ -14,15 +14,6 @@ fn particles(positions: Vec<Vec3>, velocities: Vec<Vec3>, lists: ClothLists) -> 
     let start = Start { velocities, ..Start::default() };
     let surface = Surface { positions, faces: Faces::default() };
     Cloth { start, ..Cloth::new(surface, Mass::PerPoint(1e-3), lists) }
-}
-
-fn built(cloth: Cloth, colliders: impl IntoIterator<Item = Surface>) -> ModelBuilder {
-    let mut builder = ModelBuilder::new();
-    builder.cloth(cloth).expect("good points");
-    for surface in colliders {
-        builder.collider(Collider { surface }).expect("a good mesh");
-    }
-    builder
 }
 
 fn spray() -> ClothFrame {

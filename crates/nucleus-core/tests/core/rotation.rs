@@ -1,9 +1,9 @@
 //! Rotation of particles by contact.
 
-use crate::scenes::{Vec3, cuboid, frame, ground, physical, still};
+use crate::scenes::{Vec3, built, cuboid, frame, ground, physical, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, Faces, FrameInput, Mass,
-    ModelBuilder, Particles, ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, Elements, Faces, FrameInput, Mass, Particles,
+    ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
 };
 
 const BALLS: ClothId = ClothId(0);
@@ -16,15 +16,6 @@ fn balls(positions: Vec<Vec3>, velocities: Vec<Vec3>, lists: ClothLists) -> Clot
     let start = Start { velocities, ..Start::default() };
     let surface = Surface { positions, faces: Faces::default() };
     Cloth { start, particles: Some(particles), ..Cloth::new(surface, Mass::PerPoint(0.1), lists) }
-}
-
-fn built(cloth: Cloth, colliders: impl IntoIterator<Item = Surface>) -> ModelBuilder {
-    let mut builder = ModelBuilder::new();
-    builder.cloth(cloth).expect("good points");
-    for surface in colliders {
-        builder.collider(Collider { surface }).expect("a good mesh");
-    }
-    builder
 }
 
 /// Balls without friction on their motion, and without loss of spin.

@@ -84,6 +84,16 @@ pub fn ground(friction: f64) -> GroundPlane {
     GroundPlane { origin: Vec3::zeros(), normal: Vec3::y(), bounce: 0.0, friction, stickiness: 0.0 }
 }
 
+/// A model of one cloth and these colliders.
+pub fn built(cloth: Cloth, colliders: impl IntoIterator<Item = Surface>) -> ModelBuilder {
+    let mut builder = ModelBuilder::new();
+    builder.cloth(cloth).expect("good points");
+    for surface in colliders {
+        builder.collider(Collider { surface }).expect("a good mesh");
+    }
+    builder
+}
+
 /// A cloth without damping, drag or bending, equally stiff in compression and stretch.
 pub fn still() -> ClothFrame {
     ClothFrame {
