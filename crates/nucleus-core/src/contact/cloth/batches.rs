@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::colouring::{Colouring, Place, permute};
+use crate::contact::cloth::colouring::{Colouring, Place, permute, task_key};
 use crate::contact::cloth::contact::{Candidate, ClothContact, ClothStep};
 use crate::contact::cloth::search::RefreshKind;
 use crate::math::{Real, Row4};
@@ -29,6 +29,10 @@ struct ContactBatch<R, const N: usize, const M: usize> {
     /// How many of them are disabled.
     disabled: usize,
     colouring: Colouring,
+    /// Those that motion bounds do not certify: they need a certificate at the end of each time step.
+    uncertified: Vec<u32>,
+    /// Contacts that are being merged.
+    incoming: Vec<ClothContact<R, N, M>>,
 }
 
 checkpoint_struct!([R: Real, const N: usize, const M: usize] ContactList<R, N, M> {
@@ -37,7 +41,7 @@ checkpoint_struct!([R: Real, const N: usize, const M: usize] ContactList<R, N, M
 
 // Colouring and count are rebuilt when the next candidate interval begins.
 checkpoint_struct!([R: Real, const N: usize, const M: usize] ContactBatch<R, N, M> {
-    columns: [], values: [list], parts: [], rebuilt: [disabled, colouring],
+    columns: [], values: [list], parts: [], rebuilt: [disabled, colouring, uncertified, incoming],
 });
 
 impl<R, const N: usize, const M: usize> Default for ContactList<R, N, M> {
@@ -49,12 +53,21 @@ impl<R, const N: usize, const M: usize> Default for ContactList<R, N, M> {
 
 impl<R, const N: usize, const M: usize> Default for ContactBatch<R, N, M> {
     fn default() -> Self {
-        Self { list: Vec::new(), disabled: 0, colouring: Colouring::default() }
+        Self {
+            list: Vec::new(),
+            disabled: 0,
+            colouring: Colouring::default(),
+            uncertified: Vec::new(),
+            incoming: Vec::new(),
+        }
     }
 }
 
 /// Part of a list that stays spare when it grows.
 const SPARE: usize = 8;
+
+/// Contacts per certification task.
+const CERTIFICATES_PER_TASK: usize = 512;
 
 /// The block of each point, and the number of blocks.
 pub type Blocks<'a> = (&'a [u32], u32);
@@ -119,18 +132,17 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         free_points.add(of(true), update);
         free_points.list.sort_by_key(ClothContact::points);
         free_points.sort_by_task(update.blocks, order);
-        let batch = if update.refresh.is_incremental() {
+        if update.refresh.is_incremental() {
             initial.disable_violated(update);
             incremental.list.retain(|contact| update.keeps(contact));
-            incremental
+            incremental.merge(of(false), update, order);
         } else {
             initial.list.retain(|contact| update.keeps(contact));
             initial.list.extend(incremental.list.iter().filter(|contact| update.keeps(contact)));
             incremental.clear();
-            initial
-        };
-        batch.add(of(false), update);
-        batch.sort_by_task(update.blocks, order);
+            initial.add(of(false), update);
+            initial.sort_by_task(update.blocks, order);
+        }
     }
 
     /// Calls `work` with each contact, tasks in parallel. Returns how often it answered `true`.
@@ -156,13 +168,8 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
 
     /// The number of contacts without certificate. Marks their cloths.
     pub fn certify(&mut self, step: &ClothStep<'_, R>, unproven: &[AtomicBool], pool: &ThreadPool) -> u64 {
-        self.count(pool, |contact| {
-            let is_unproven = !contact.certify(step);
-            if is_unproven {
-                contact.mark_cloths(unproven);
-            }
-            is_unproven
-        })
+        let batches = [&mut self.free_points, &mut self.initial, &mut self.incremental];
+        batches.into_iter().map(|batch| batch.certify(step, unproven, pool)).sum()
     }
 }
 
@@ -171,11 +178,12 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
         self.list.clear();
         self.disabled = 0;
         self.colouring.clear();
+        self.uncertified.clear();
     }
 
     /// Disables contacts of points that violated their bounds. Skips tasks between blocks without such points.
     fn disable_violated(&mut self, update: &ListUpdate<'_, R>) {
-        let Self { list, disabled, colouring } = self;
+        let Self { list, disabled, colouring, .. } = self;
         for (task, blocks) in colouring.tasks.iter().zip(&colouring.task_blocks) {
             if blocks.iter().all(|&block| update.has_violations.get(block as usize) == Some(&false)) {
                 continue;
@@ -196,21 +204,89 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
         candidates: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
         update: &ListUpdate<'_, R>,
     ) {
-        let (count, list) = (candidates.clone().count(), &mut self.list);
+        self.reserve(candidates.clone().count());
+        self.list.extend(candidates.map(|candidate| ClothContact::new(candidate, update.start)));
+    }
+
+    fn reserve(&mut self, count: usize) {
+        let list = &mut self.list;
         if list.capacity() - list.len() < count {
             // A list of millions must not double.
             list.reserve_exact(count + (list.len() + count) / SPARE);
         }
-        list.extend(candidates.map(|candidate| ClothContact::new(candidate, update.start)));
     }
 
     /// Sorts the contacts by task.
     fn sort_by_task(&mut self, (block, blocks): Blocks<'_>, order: &mut Vec<Place>) {
-        let Self { list, disabled, colouring } = self;
+        let Self { list, disabled, colouring, .. } = self;
         *disabled = 0; // retained contacts are enabled
-        let of_points = |contact: &ClothContact<R, N, M>| contact.points().map(|point| block[point as usize]);
-        colouring.assign(list.iter().map(of_points), blocks, order);
-        permute(list, order);
+        sort(list, block, order);
+        colouring.assign(order.iter().map(|place| place.0), blocks);
+        self.list_uncertified();
+    }
+
+    fn list_uncertified(&mut self) {
+        let Self { list, uncertified, .. } = self;
+        uncertified.clear();
+        uncertified
+            .extend((0..).zip(&*list).filter(|(_, contact)| !contact.params.certified).map(|(at, _)| at));
+    }
+
+    /// Adds the contacts of candidates to contacts that are sorted by task, each behind those of its task.
+    fn merge<'a>(
+        &mut self,
+        candidates: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
+        &ListUpdate { blocks: (block, blocks), start, .. }: &ListUpdate<'_, R>,
+        order: &mut Vec<Place>,
+    ) {
+        let key =
+            |contact: &ClothContact<R, N, M>| task_key(contact.points().map(|point| block[point as usize]));
+        let mut incoming = std::mem::take(&mut self.incoming);
+        incoming.clear();
+        incoming.extend(candidates.map(|candidate| ClothContact::new(candidate, start)));
+        sort(&mut incoming, block, order);
+        self.reserve(incoming.len());
+        let Self { list, colouring, .. } = self;
+        let mut sorted = list.len();
+        list.extend_from_slice(&incoming);
+        // From the back, so that every contact moves once.
+        let mut to = list.len();
+        for contact in incoming.iter().rev() {
+            let own = key(contact);
+            while sorted > 0 && key(&list[sorted - 1]) > own {
+                (sorted, to) = (sorted - 1, to - 1);
+                list[to] = list[sorted];
+            }
+            to -= 1;
+            list[to] = *contact;
+        }
+        colouring.assign(list.iter().map(key), blocks);
+        self.incoming = incoming;
+        self.list_uncertified();
+    }
+
+    /// The number of contacts without certificate. Marks their cloths. Needs no colours, because it moves no point.
+    fn certify(&mut self, step: &ClothStep<'_, R>, unproven: &[AtomicBool], pool: &ThreadPool) -> u64 {
+        let count = AtomicU64::new(0);
+        let Self { list, uncertified, .. } = self;
+        let list = DisjointSlice::new(list);
+        pool.parallel_for(uncertified.len().div_ceil(CERTIFICATES_PER_TASK), |task| {
+            let own = uncertified.chunks(CERTIFICATES_PER_TASK).nth(task).unwrap_or_default();
+            let mut unproven_here = 0;
+            for &at in own {
+                // SAFETY: every contact is listed once.
+                #[allow(unsafe_code)]
+                let [contact] = (unsafe { list.run(at..at + 1) }) else { continue };
+                if !contact.certify(step) {
+                    contact.mark_cloths(unproven);
+                    unproven_here += 1;
+                }
+            }
+            if unproven_here > 0 {
+                count.fetch_add(unproven_here, Ordering::Relaxed);
+            }
+        });
+        count.into_inner()
     }
 
     fn count(&mut self, pool: &ThreadPool, work: impl Fn(&mut ClothContact<R, N, M>) -> bool + Sync) -> u64 {
@@ -233,4 +309,17 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
         }
         count.into_inner()
     }
+}
+
+/// Sorts contacts by task, each behind the earlier ones of its task. `block` is that of each point.
+fn sort<R: Real, const N: usize, const M: usize>(
+    list: &mut [ClothContact<R, N, M>],
+    block: &[u32],
+    order: &mut Vec<Place>,
+) {
+    order.clear();
+    let keys = list.iter().map(|contact| task_key(contact.points().map(|point| block[point as usize])));
+    order.extend(keys.zip(0..));
+    order.sort_unstable();
+    permute(list, order);
 }

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-/// Moves the contact of each place to it. The order is lost.
+/// Moves the contact of each place to it. The keys stay, the indices are lost.
 pub fn permute<T: Copy>(list: &mut [T], order: &mut [Place]) {
     for first in 0..list.len() {
         let (held, mut to) = (list[first], first);
@@ -52,18 +52,19 @@ impl Colouring {
         self.colours.clear();
     }
 
-    /// Colours contacts, each given by the blocks of its points. There are `blocks` blocks. Writes the order of the tasks.
-    pub fn assign(&mut self, contacts: impl Iterator<Item = [u32; 4]>, blocks: u32, order: &mut Vec<Place>) {
-        order.clear();
-        order.extend(contacts.map(key).zip(0..));
-        order.sort_unstable();
+    /// Colours contacts that are sorted by task, given by their [`task_key`]. There are `blocks` blocks.
+    pub fn assign(&mut self, sorted_keys: impl Iterator<Item = [u32; 2]>, blocks: u32) {
         self.tasks.clear();
         self.task_blocks.clear();
-        let mut from = 0;
-        for run in order.chunk_by(|a, b| a.0 == b.0) {
-            self.tasks.push(from..from + run.len() as u32);
-            self.task_blocks.push(run[0].0);
-            from += run.len() as u32;
+        for (at, key) in (0..).zip(sorted_keys) {
+            if self.task_blocks.last() == Some(&key)
+                && let Some(run) = self.tasks.last_mut()
+            {
+                run.end = at + 1;
+            } else {
+                self.tasks.push(at..at + 1);
+                self.task_blocks.push(key);
+            }
         }
         self.assign_colours(blocks);
         self.sort_by_colour();
@@ -109,8 +110,8 @@ impl Colouring {
     }
 }
 
-/// The one or two blocks of a contact, the lower first.
-fn key(blocks: [u32; 4]) -> [u32; 2] {
+/// The one or two blocks of a contact, the lower first: contacts of one key form a task.
+pub fn task_key(blocks: [u32; 4]) -> [u32; 2] {
     let low = blocks.into_iter().min().unwrap_or(0);
     let high = blocks.into_iter().max().unwrap_or(0);
     let between = blocks.into_iter().any(|block| block != low && block != high);
@@ -128,8 +129,10 @@ mod tests {
         fn tasks_of_one_colour_share_no_block_and_every_contact_has_a_task(
             contacts in proptest::collection::vec(proptest::array::uniform4(0u32..70), 0..200)
         ) {
-            let (mut colouring, mut order) = (Colouring::default(), Vec::new());
-            colouring.assign(contacts.iter().copied(), 70, &mut order);
+            let (mut colouring, mut order) = (Colouring::default(), Vec::<Place>::new());
+            order.extend(contacts.iter().copied().map(task_key).zip(0..));
+            order.sort_unstable();
+            colouring.assign(order.iter().map(|place| place.0), 70);
             let mut places = 0;
             for colour in &colouring.colours {
                 let mut taken = std::collections::HashMap::new();
