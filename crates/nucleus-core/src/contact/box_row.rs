@@ -37,17 +37,6 @@ impl BoxRow {
         }));
     }
 
-    /// One of the boxes.
-    #[inline(always)]
-    pub fn swept_box(&self, at: usize) -> SweptBox {
-        let Aabb8 { low, high } = &self.eights[at / 8];
-        let corner = |of: &[[f32; 8]; 3]| [of[0][at % 8], of[1][at % 8], of[2][at % 8], 0.0];
-        [
-            Aabb::from_corners([corner(&low[0]), corner(&high[0])]),
-            Aabb::from_corners([corner(&low[1]), corner(&high[1])]),
-        ]
-    }
-
     /// Calls `found` with the index of each box that may overlap, as [`Aabb::may_overlap`] says.
     #[inline(always)]
     pub fn for_each_overlap(&self, ours: &SweptBox, mut found: impl FnMut(usize)) {
@@ -173,9 +162,6 @@ mod tests {
             row.for_each_overlap(&ours, |at| found.push(at));
             let alone = (0..theirs.len()).filter(|&at| Aabb::may_overlap(&ours, &theirs[at]));
             prop_assert_eq!(found, alone.collect::<Vec<_>>());
-            for (at, boxes) in theirs.iter().enumerate() {
-                prop_assert_eq!(row.swept_box(at), *boxes);
-            }
         }
 
         #[test]

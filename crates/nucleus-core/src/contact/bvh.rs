@@ -81,12 +81,6 @@ impl Aabb {
         apart == [false; 4]
     }
 
-    /// The box between a low and a high corner, whose fourth numbers are zero.
-    #[inline(always)]
-    pub fn from_corners([low, high]: [[f32; 4]; 2]) -> Self {
-        Self { low, high }
-    }
-
     /// The low and the high corner; the fourth number is zero.
     #[inline(always)]
     pub fn corners(&self) -> [[f32; 4]; 2] {

@@ -1,5 +1,7 @@
 //! Points as rows of four numbers, and the vector algebra that contact needs.
 
+use std::ops::{Add, Mul, Sub};
+
 use crate::bytes::{Encode, Reader};
 use crate::math::real::{Lanes, Real};
 
@@ -41,9 +43,9 @@ impl<R: Real> Encode for Row4<R> {
     }
 }
 
-/// The dot product of two triples, summed left to right.
+/// The dot product of two triples of numbers or lanes, summed left to right.
 #[inline(always)]
-pub fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+pub fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -53,9 +55,9 @@ pub fn add<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// The difference of two triples.
+/// The difference of two triples of numbers or lanes.
 #[inline(always)]
-pub fn sub<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+pub fn sub<T: Copy + Sub<Output = T>>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 

@@ -8,8 +8,8 @@ use crate::contact::bvh::Aabb;
 use crate::contact::cloth::batches::ListUpdate;
 use crate::contact::cloth::contacts::{ClothContacts, GROUPS_PER_TASK, SearchBuffers};
 use crate::contact::cloth::intersections::find_intersections;
-use crate::contact::cloth::motion_bounds::{BoundPredictor, Trajectory, mean_motion};
-use crate::contact::cloth::query::FoundContacts;
+use crate::contact::cloth::motion_bounds::{BoundPredictor, Trajectory};
+use crate::contact::cloth::query::{ClothPair, FoundContacts};
 use crate::contact::cloth::search::{ClothSearch, RefreshKind, SearchInput};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
@@ -29,10 +29,6 @@ const MIN_INTERVAL_STEPS: f64 = 4.0;
 const BOUND_RADIUS: [f64; 2] = [0.4, 0.08];
 /// Smallest radius of a motion bound, in metres.
 const MIN_BOUND_RADIUS: f64 = 1e-6;
-/// Predicted motion relative to the mean, at most, in edge lengths: longer boxes would overlap too much.
-const MAX_TRAVEL: f64 = 2.0;
-/// In metres: more than any motion in a frame, and finite in single precision.
-const UNLIMITED_TRAVEL: f64 = 1e9;
 
 /// Ensures that the contact cache includes all that can touch in this step. Does nothing while every point
 /// keeps its motion bound.
@@ -140,17 +136,12 @@ fn predict_trajectories<R: Real>(
     let ClothContacts { trajectories, interval_start, interval, bounds_violated, cache, .. } = cloth_contacts;
     let of_last = R::from_f64((now.to - now.from) / (now.from - previous_start).max(now.to - now.from));
     let (trajectories, bounds_violated) = (trajectories.shared(), DisjointSlice::new(bounds_violated));
+    let predictor = BoundPredictor::new(now, *interval);
     for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
-        let rows = cloth.points().start as usize..cloth.points().end as usize;
-        let common = mean_motion(&state.start[rows.clone()], &state.displacement[rows]);
-        let predictor = BoundPredictor::new(now, *interval, common);
         let thickness = settings.thickness.max(settings.self_collision.thickness);
         let [of_thickness, of_edge] = BOUND_RADIUS;
         let radius = (of_thickness * thickness).max(of_edge * cloth.edge_length).max(MIN_BOUND_RADIUS);
-        // A free point has a small box at any speed, so its line needs no limit.
-        let is_free = cloth.boundary.triangles.is_empty();
-        let farthest = if is_free { UNLIMITED_TRAVEL } else { MAX_TRAVEL * cloth.edge_length };
-        let (radius, farthest) = (R::from_f64(radius), R::from_f64(farthest));
+        let radius = R::from_f64(radius);
         pool.parallel_for(cloth.blocks.len(), |block| {
             for row in cloth.blocks.range(block) {
                 let before = state.start[row as usize].xyz();
@@ -178,7 +169,7 @@ fn predict_trajectories<R: Real>(
                         }
                         bounds_violated.set(row, true);
                     }
-                    trajectories.set(row, predictor.extrapolate(before, [motion, rate], radius, farthest));
+                    trajectories.set(row, predictor.extrapolate(before, [motion, rate], radius));
                 }
             }
         });
@@ -210,12 +201,23 @@ fn find_candidates<R: Real>(
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;
-    let SearchBuffers { bounds, group_bounds, groups, tasks, orders, has_violations, .. } = buffers;
+    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, orders, has_violations, .. } =
+        buffers;
+    elements.find_new_bounds(groups, bounds_violated, new_bounds);
     let chunks = groups.len().div_ceil(GROUPS_PER_TASK);
     tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
     let own = DisjointSlice::new(tasks);
-    let search =
-        ClothSearch { elements, materials, bounds, group_bounds, untangling, input, bounds_violated };
+    let search = ClothSearch {
+        elements,
+        materials,
+        bounds,
+        group_bounds,
+        untangling,
+        input,
+        margin,
+        bounds_violated,
+        new_bounds,
+    };
     pool.parallel_for(chunks, |task| {
         // Uncontended: a task runs once.
         // SAFETY: every task has its own.
@@ -244,11 +246,19 @@ impl<R: Real> ClothSearch<'_, R> {
     /// Finds all contacts of the elements of a group that have a new bound.
     fn search_group(&self, group: u32, found: &mut FoundContacts<R>) {
         let ours = self.group(group);
-        let [start, end] = ours.swept_box;
-        self.elements.query(&start.union(*end), |other| {
-            if Aabb::may_overlap(ours.swept_box, &self.elements.swept_boxes[other as usize]) {
-                self.find_contacts(&ours, other, found);
-            }
-        });
+        let mut new = std::mem::take(&mut found.new_elements);
+        new.fill(self, &ours);
+        let [start, end] = new.swept_box;
+        let target = start.union(end);
+        for cloth in 0..self.input.cloths.len() {
+            let Some(pair) = ClothPair::new(self, [ours.first_edge.0, cloth]) else { continue };
+            self.elements.query_cloth(cloth, &target, |other| {
+                if Aabb::may_overlap(&new.swept_box, &self.elements.swept_boxes[other as usize]) {
+                    pair.test_boxes((&ours, &new), &self.group(other), found);
+                }
+            });
+            pair.find_contacts(found);
+        }
+        found.new_elements = new;
     }
 }

@@ -60,14 +60,14 @@ impl<R: Real> ContactCache<R> {
             0 => {
                 let Ok(mut lists) = of_points.lock() else { return };
                 let (faces, points, order) = &mut *lists;
-                faces.update(tasks.iter().flat_map(|found| &found.point_face), update, order);
-                points.update(tasks.iter().flat_map(|found| &found.point_point), update, order);
+                faces.update(tasks.iter().flat_map(|found| &found.point_face.candidates), update, order);
+                points.update(tasks.iter().flat_map(|found| &found.point_point.candidates), update, order);
             }
             _ => {
                 let Ok(mut lists) = of_edges.lock() else { return };
                 let (edges, points, order) = &mut *lists;
-                edges.update(tasks.iter().flat_map(|found| &found.edge_edge), update, order);
-                points.update(tasks.iter().flat_map(|found| &found.point_edge), update, order);
+                edges.update(tasks.iter().flat_map(|found| &found.edge_edge.candidates), update, order);
+                points.update(tasks.iter().flat_map(|found| &found.point_edge.candidates), update, order);
             }
         });
     }

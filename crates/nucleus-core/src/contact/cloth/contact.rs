@@ -6,7 +6,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::bytes::{Encode, Reader, encode_struct};
-use crate::contact::cloth::element_bounds::ElementPoints;
+use crate::contact::cloth::swept_points::ElementPoints;
 use crate::contact::material::{ContactMaterial, ContactPoints, MaterialMaps};
 use crate::contact::narrow_phase::{ElementPositions, gap_along, shortest_line};
 use crate::contact::time_step::PositionWriter;

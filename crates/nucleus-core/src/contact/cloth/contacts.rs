@@ -10,7 +10,7 @@ use crate::contact::cloth::elements::{ClothGroup, ElementGroups};
 use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::query::FoundContacts;
-use crate::contact::cloth::search::{RefreshKind, SearchInput};
+use crate::contact::cloth::search::{NewBounds, RefreshKind, SearchInput};
 use crate::contact::cloth::untangling::Untangling;
 use crate::contact::material::ContactMaterial;
 use crate::math::{Real, Row4};
@@ -158,6 +158,8 @@ pub struct SearchBuffers<R> {
     changed: Vec<u32>,
     /// The groups that are searched.
     pub(super) groups: Vec<u32>,
+    /// Which points of each group have new bounds.
+    pub(super) new_bounds: Vec<NewBounds>,
     /// The orders of contacts that are being sorted.
     pub(super) orders: [Vec<Place>; 2],
     /// Whether a point of each block violated its bound.
@@ -177,6 +179,7 @@ impl<R> Default for SearchBuffers<R> {
             bounds_margin: None,
             changed: Vec::new(),
             groups: Vec::new(),
+            new_bounds: Vec::new(),
             orders: Default::default(),
             has_violations: Vec::new(),
             tasks: Vec::new(),

@@ -8,6 +8,7 @@ use crate::bytes::checkpoint_struct;
 use crate::contact::boundary::ElementGroup;
 use crate::contact::bvh::{Aabb, Bvh, SweptBox};
 use crate::contact::cloth::element_bounds::ElementBounds;
+use crate::contact::cloth::search::NewBounds;
 use crate::math::Real;
 use crate::model::ClothModel;
 
@@ -104,6 +105,16 @@ impl ElementGroups {
         groups.dedup();
     }
 
+    /// Writes for each group which of its points have new bounds; `searched` are the groups that have any.
+    pub fn find_new_bounds(&self, searched: &[u32], has_new_bound: &[bool], found: &mut Vec<NewBounds>) {
+        found.clear();
+        found.resize(self.groups.len(), NewBounds::None);
+        for &group in searched {
+            let all = self.points_of(group as usize).iter().all(|&point| has_new_bound[point as usize]);
+            found[group as usize] = if all { NewBounds::All } else { NewBounds::Some };
+        }
+    }
+
     /// Sets the swept box of a group.
     pub fn set_bound(&mut self, group: u32, bounds: &ElementBounds, margin: f32) {
         self.swept_boxes[group as usize] = bounds.bound(self.points_of(group as usize), margin);
@@ -123,9 +134,14 @@ impl ElementGroups {
     /// Calls `found` with each group whose leaf overlaps a box, cloth by cloth.
     #[inline]
     pub fn query(&self, target: &Aabb, mut found: impl FnMut(u32)) {
-        for (bvh, &first) in self.bvhs.iter().zip(&self.first_groups) {
-            bvh.query(target, |group| found(first + group));
-        }
+        (0..self.bvhs.len()).for_each(|cloth| self.query_cloth(cloth, target, &mut found));
+    }
+
+    /// Calls `found` with each group of one cloth whose leaf overlaps a box.
+    #[inline]
+    pub fn query_cloth(&self, cloth: usize, target: &Aabb, mut found: impl FnMut(u32)) {
+        let first = self.first_groups[cloth];
+        self.bvhs[cloth].query(target, |group| found(first + group));
     }
 
     /// Whether each hierarchy holds each group of its cloth exactly once.

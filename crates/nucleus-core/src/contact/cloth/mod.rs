@@ -7,7 +7,7 @@
 //! | the elements of all cloths in groups, under a BVH for each cloth | [`elements`] |
 //! | the trajectory and radius that bound each point over a candidate interval | [`motion_bounds`] |
 //! | broad phase: predicts motion bounds, and searches where points violate theirs | [`broad_phase`] |
-//! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`] |
+//! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`], [`new_elements`], [`swept_points`] |
 //! | the contacts by kind, in batches that threads share | [`cache`], [`batches`], [`colouring`] |
 //! | one contact | [`contact`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
@@ -27,8 +27,10 @@ pub mod elements;
 mod group_bounds;
 pub mod intersections;
 pub mod motion_bounds;
+mod new_elements;
 pub mod pass;
 mod query;
 pub mod response;
 mod search;
+mod swept_points;
 pub mod untangling;

@@ -4,7 +4,7 @@
 //! The line follows the point's own motion, so neighbours that move together keep their distance: a sheet that
 //! falls or swings finds no contact with itself.
 
-use crate::math::{Real, Row4, add, clamp_length, dot, scale, sub};
+use crate::math::{Real, Row4, add, dot, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::StepInterval;
 
@@ -111,40 +111,26 @@ impl<R: Real> SharedTrajectories<'_, R> {
 /// Share of its radius within which a point keeps its bound in the next interval without a search.
 const KEEP_SHARE: f64 = 0.8;
 
-/// Predicts the trajectories of one cloth.
+/// Predicts trajectories.
 pub struct BoundPredictor<R> {
     /// Start of the step, as a share of the interval.
     step_start: R,
     /// Time steps in the interval.
     steps: R,
-    /// Mean motion of the cloth's points in a step, in metres.
-    mean_step: [R; 3],
 }
 
 impl<R: Real> BoundPredictor<R> {
     /// For a step of an interval of the frame.
-    pub fn new(now: StepInterval, interval: [f64; 2], mean_step: [R; 3]) -> Self {
+    pub fn new(now: StepInterval, interval: [f64; 2]) -> Self {
         let (step, length) = (now.to - now.from, interval[1] - interval[0]);
-        Self {
-            step_start: R::from_f64((now.from - interval[0]) / length),
-            steps: R::from_f64(length / step),
-            mean_step,
-        }
+        Self { step_start: R::from_f64((now.from - interval[0]) / length), steps: R::from_f64(length / step) }
     }
 
-    /// Extrapolates the line at `rate` per step, but no farther than `farthest` from the mean motion. The radius
-    /// has room for this step's own motion.
+    /// Extrapolates the line at `rate` per step. The radius has room for this step's own motion.
     #[inline(always)]
-    pub fn extrapolate(
-        &self,
-        before: [R; 3],
-        [motion, rate]: [[R; 3]; 2],
-        radius: R,
-        farthest: R,
-    ) -> Trajectory<R> {
-        let most = farthest / (R::ONE - self.step_start + R::EPSILON);
-        let travel = clamp_difference(scale(rate, self.steps), scale(self.mean_step, self.steps), most);
-        let residual = sub(motion, scale(travel, R::ONE / self.steps));
+    pub fn extrapolate(&self, before: [R; 3], [motion, rate]: [[R; 3]; 2], radius: R) -> Trajectory<R> {
+        let travel = scale(rate, self.steps);
+        let residual = sub(motion, rate);
         let radius = radius + dot(residual, residual).sqrt();
         Trajectory { origin: sub(before, scale(travel, self.step_start)), travel, radius }
     }
@@ -157,21 +143,4 @@ impl<R: Real> BoundPredictor<R> {
         let last = add(off, scale(motion, self.steps));
         dot(off, off) <= most * most && dot(last, last) <= most * most
     }
-}
-
-/// The mean motion of some points in a step. A common motion brings no point nearer to another.
-pub fn mean_motion<R: Real>(start: &[Row4<R>], now: &[Row4<R>]) -> [R; 3] {
-    let mut sum = [0.0f64; 3];
-    for (start, now) in start.iter().zip(now) {
-        let motion = sub(now.xyz(), start.xyz());
-        for axis in 0..3 {
-            sum[axis] += motion[axis].to_f64();
-        }
-    }
-    sum.map(|x| R::from_f64(x / start.len().max(1) as f64))
-}
-
-/// A motion that differs from the mean by `most` at most.
-fn clamp_difference<R: Real>(motion: [R; 3], mean_step: [R; 3], most: R) -> [R; 3] {
-    add(mean_step, clamp_length(sub(motion, mean_step), most))
 }

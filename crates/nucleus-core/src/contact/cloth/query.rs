@@ -1,10 +1,10 @@
 //! Broad-phase query of one element group against others: tests rows of swept boxes, then creates contacts.
 
 use crate::contact::box_row::BoxRow;
-use crate::contact::bvh::SweptBox;
 use crate::contact::cloth::contact::{Candidate, ContactParams};
-use crate::contact::cloth::element_bounds::ElementPoints;
-use crate::contact::cloth::search::{ClothSearch, SearchedGroup};
+use crate::contact::cloth::new_elements::{NewElement, NewElements, NewRow};
+use crate::contact::cloth::search::{ClothSearch, NewBounds, SearchedGroup};
+use crate::contact::cloth::swept_points::ElementPoints;
 use crate::contact::material::ContactMaterial;
 use crate::input::frame::Elements;
 use crate::math::Real;
@@ -13,22 +13,40 @@ use crate::math::Real;
 #[derive(Debug)]
 pub struct FoundContacts<R> {
     /// Points and faces.
-    pub point_face: Vec<Candidate<R, 1, 3>>,
+    pub point_face: FoundPairs<R, 1, 3>,
     /// Edges and edges.
-    pub edge_edge: Vec<Candidate<R, 2, 2>>,
+    pub edge_edge: FoundPairs<R, 2, 2>,
     /// Points and edges.
-    pub point_edge: Vec<Candidate<R, 1, 2>>,
+    pub point_edge: FoundPairs<R, 1, 2>,
     /// Points and points.
-    pub point_point: Vec<Candidate<R, 1, 1>>,
+    pub point_point: FoundPairs<R, 1, 1>,
+    /// The elements with new bounds of the group that is searched.
+    pub(super) new_elements: NewElements,
+}
+
+/// Pairs of elements of one kind.
+#[derive(Debug)]
+pub struct FoundPairs<R, const N: usize, const M: usize> {
+    /// Those that can touch.
+    pub candidates: Vec<Candidate<R, N, M>>,
+    /// Those whose boxes overlap, before the narrow phase.
+    overlapping: Vec<ElementPoints<N, M>>,
+}
+
+impl<R, const N: usize, const M: usize> Default for FoundPairs<R, N, M> {
+    fn default() -> Self {
+        Self { candidates: Vec::new(), overlapping: Vec::new() }
+    }
 }
 
 impl<R> Default for FoundContacts<R> {
     fn default() -> Self {
         Self {
-            point_face: Vec::new(),
-            edge_edge: Vec::new(),
-            point_edge: Vec::new(),
-            point_point: Vec::new(),
+            point_face: FoundPairs::default(),
+            edge_edge: FoundPairs::default(),
+            point_edge: FoundPairs::default(),
+            point_point: FoundPairs::default(),
+            new_elements: NewElements::default(),
         }
     }
 }
@@ -36,144 +54,165 @@ impl<R> Default for FoundContacts<R> {
 impl<R> FoundContacts<R> {
     /// Removes all, keeps the capacity.
     pub fn clear(&mut self) {
-        self.point_face.clear();
-        self.edge_edge.clear();
-        self.point_edge.clear();
-        self.point_point.clear();
+        self.point_face.candidates.clear();
+        self.edge_edge.candidates.clear();
+        self.point_edge.candidates.clear();
+        self.point_point.candidates.clear();
     }
 }
 
-impl<R: Real> ClothSearch<'_, R> {
-    /// Finds all contacts of a group's elements that have new bounds with the elements of another group. Where both elements
-    /// have new bounds, the contact is found once: from the point in point-edge and point-face pairs, from the lower index
-    /// in others.
-    pub(super) fn find_contacts(&self, ours: &SearchedGroup<'_>, other: u32, found: &mut FoundContacts<R>) {
-        let theirs = self.group(other);
-        let Some(pair) = ClothPair::new(self, [ours.first_edge.0, theirs.first_edge.0]) else { return };
-        let groups =
-            GroupPair { ours, theirs: &theirs, all_new: self.all_have_new_bounds(other), pair: &pair };
+impl<R: Real> ClothPair<'_, R> {
+    /// Finds all overlapping boxes of a group's elements that have new bounds with the elements of another group. Where both
+    /// elements have new bounds, the pair is found once: from the point in point-edge and point-face pairs, from the lower
+    /// index in others.
+    pub(super) fn test_boxes(
+        &self,
+        (ours, new): (&SearchedGroup<'_>, &NewElements),
+        theirs: &SearchedGroup<'_>,
+        found: &mut FoundContacts<R>,
+    ) {
+        let groups = GroupPair { ours, new, theirs, pair: self };
         // A group without faces is points, whatever the cloth's element type.
         let element_type =
             |is_free: bool, elements: Elements| if is_free { Elements::Points } else { elements };
-        let our_type = element_type(ours.is_free(), pair.material.elements[0]);
-        let their_type = element_type(theirs.is_free(), pair.material.elements[1]);
-        let FoundContacts { point_face, edge_edge, point_edge, point_point } = found;
+        let our_type = element_type(ours.is_free(), self.material.elements[0]);
+        let their_type = element_type(theirs.is_free(), self.material.elements[1]);
+        let FoundContacts { point_face, edge_edge, point_edge, point_point, .. } = found;
+        let (point_face, point_edge) = (&mut point_face.overlapping, &mut point_edge.overlapping);
         let (edges, triangles) = (&theirs.bounds.edges, &theirs.bounds.triangles);
         match their_type {
-            Elements::Points if our_type == Elements::Points => groups.points_against_points(point_point),
+            Elements::Points if our_type == Elements::Points => {
+                groups.points_against_points(&mut point_point.overlapping);
+            }
             Elements::Points => {}
             Elements::Edges => groups.points_against_elements((theirs.edges, edges), point_edge),
             Elements::Faces => groups.points_against_elements((theirs.triangles, triangles), point_face),
         }
         match our_type {
             Elements::Points => {}
-            Elements::Edges => groups.elements_against_points((ours.edges, &ours.bounds.edges), point_edge),
-            Elements::Faces => {
-                groups.elements_against_points((ours.triangles, &ours.bounds.triangles), point_face);
-            }
+            Elements::Edges => groups.elements_against_points(&new.edges, point_edge),
+            Elements::Faces => groups.elements_against_points(&new.triangles, point_face),
         }
-        if pair.material.edges {
-            groups.edges_against_edges(edge_edge);
+        if self.material.edges {
+            groups.edges_against_edges(&mut edge_edge.overlapping);
         }
+    }
+
+    /// The narrow phase: contacts of the pairs whose boxes overlap.
+    pub(super) fn find_contacts(&self, found: &mut FoundContacts<R>) {
+        self.find_contacts_of(&mut found.point_face);
+        self.find_contacts_of(&mut found.edge_edge);
+        self.find_contacts_of(&mut found.point_edge);
+        self.find_contacts_of(&mut found.point_point);
+    }
+
+    fn find_contacts_of<const N: usize, const M: usize>(&self, found: &mut FoundPairs<R, N, M>) {
+        let FoundPairs { candidates, overlapping } = found;
+        let [thickness, range] = self.thickness_and_range;
+        let (points, share) = (self.search.bounds.swept_points(), self.search.input.interval_share as f32);
+        for four in overlapping.chunks(4) {
+            let separated = points.separated_centroids(four, share, thickness * range);
+            let near = four.iter().enumerate().filter(|(lane, _)| separated & (1 << lane) == 0);
+            candidates.extend(near.filter_map(|(_, &pair)| self.contact(pair)));
+        }
+        overlapping.clear();
     }
 }
 
-/// A group whose elements with new bounds are tested against those of another.
+/// A group whose elements with new bounds are tested against all of another.
 struct GroupPair<'a, R> {
     ours: &'a SearchedGroup<'a>,
+    new: &'a NewElements,
     theirs: &'a SearchedGroup<'a>,
-    /// Whether all points of theirs have new bounds.
-    all_new: bool,
     pair: &'a ClothPair<'a, R>,
 }
 
 impl<R: Real> GroupPair<'_, R> {
-    /// Calls `found` with each of our elements that has a new bound and may overlap the other group: its index, its points
-    /// and its box.
+    /// Whether an element of theirs keeps its bounds.
     #[inline(always)]
-    fn for_each_new<const N: usize>(
-        &self,
-        (elements, boxes): (&[[u32; N]], &BoxRow),
-        mut found: impl FnMut(usize, [u32; N], &SweptBox),
-    ) {
-        boxes.for_each_overlap(self.theirs.swept_box, |at| {
-            if self.pair.search.has_new_bound(&elements[at]) {
-                found(at, elements[at], &boxes.swept_box(at));
-            }
-        });
+    fn is_kept(&self, points: &[u32]) -> bool {
+        match self.theirs.new_bounds {
+            NewBounds::None => true,
+            NewBounds::All => false,
+            NewBounds::Some => !self.pair.search.has_new_bound(points),
+        }
     }
 
-    fn our_points(&self) -> (&[[u32; 1]], &BoxRow) {
-        (self.ours.points.as_chunks().0, &self.ours.bounds.points)
-    }
-
-    fn points_against_points(&self, found: &mut Vec<Candidate<R, 1, 1>>) {
-        self.for_each_new(self.our_points(), |_, [p], here| {
-            self.theirs.bounds.points.for_each_overlap(here, |at| {
-                let q = self.theirs.points[at];
-                let (low, high) = (p.min(q), p.max(q));
-                if q != p && (p == low || !self.pair.search.has_new_bound(&[q])) {
-                    found.extend(self.pair.contact(([low], [high])));
-                }
-            });
-        });
+    fn points_against_points(&self, found: &mut Vec<ElementPoints<1, 1>>) {
+        self.new.points.for_each_overlap(
+            self.theirs.swept_box,
+            |&NewElement { points: [p], swept_box, .. }| {
+                self.theirs.bounds.points.for_each_overlap(&swept_box, |at| {
+                    let q = self.theirs.points[at];
+                    let (low, high) = (p.min(q), p.max(q));
+                    if q != p && (p == low || self.is_kept(&[q])) {
+                        found.push(([low], [high]));
+                    }
+                });
+            },
+        );
     }
 
     /// Our points against their edges or faces.
     fn points_against_elements<const N: usize>(
         &self,
         (elements, boxes): (&[[u32; N]], &BoxRow),
-        found: &mut Vec<Candidate<R, 1, N>>,
+        found: &mut Vec<ElementPoints<1, N>>,
     ) {
-        self.for_each_new(self.our_points(), |_, [p], here| {
-            boxes.for_each_overlap(here, |at| {
-                if !elements[at].contains(&p) {
-                    found.extend(self.pair.contact(([p], elements[at])));
-                }
-            });
-        });
+        self.new.points.for_each_overlap(
+            self.theirs.swept_box,
+            |&NewElement { points: [p], swept_box, .. }| {
+                boxes.for_each_overlap(&swept_box, |at| {
+                    if !elements[at].contains(&p) {
+                        found.push(([p], elements[at]));
+                    }
+                });
+            },
+        );
     }
 
-    /// Our edges or faces against their points whose bounds are not new.
+    /// Our edges or faces against their points that keep their bounds.
     fn elements_against_points<const N: usize>(
         &self,
-        ours: (&[[u32; N]], &BoxRow),
-        found: &mut Vec<Candidate<R, 1, N>>,
+        ours: &NewRow<N>,
+        found: &mut Vec<ElementPoints<1, N>>,
     ) {
-        if self.all_new {
+        if self.theirs.new_bounds == NewBounds::All {
             return;
         }
-        self.for_each_new(ours, |_, element, here| {
-            self.theirs.bounds.points.for_each_overlap(here, |at| {
+        ours.for_each_overlap(self.theirs.swept_box, |&NewElement { points: element, swept_box, .. }| {
+            self.theirs.bounds.points.for_each_overlap(&swept_box, |at| {
                 let q = self.theirs.points[at];
-                if !self.pair.search.has_new_bound(&[q]) && !element.contains(&q) {
-                    found.extend(self.pair.contact(([q], element)));
+                if self.is_kept(&[q]) && !element.contains(&q) {
+                    found.push(([q], element));
                 }
             });
         });
     }
 
-    fn edges_against_edges(&self, found: &mut Vec<Candidate<R, 2, 2>>) {
+    fn edges_against_edges(&self, found: &mut Vec<ElementPoints<2, 2>>) {
         let [our_first, their_first] = [self.ours.first_edge, self.theirs.first_edge];
-        if self.all_new && our_first > their_first {
+        if self.theirs.new_bounds == NewBounds::All && our_first > their_first {
             return; // every pair is found from theirs
         }
-        let is_new = |ends: &[u32]| self.all_new || self.pair.search.has_new_bound(ends);
-        self.for_each_new((self.ours.edges, &self.ours.bounds.edges), |edge, [a, b], here| {
-            let edge = (our_first.0, our_first.1 + edge);
-            self.theirs.bounds.edges.for_each_overlap(here, |at| {
-                let [c, d] = self.theirs.edges[at];
-                let is_joined = a == c || a == d || b == c || b == d;
-                if !is_joined && (edge < (their_first.0, their_first.1 + at) || !is_new(&[c, d])) {
-                    found.extend(self.pair.contact(([a, b], [c, d])));
-                }
-            });
-        });
+        self.new.edges.for_each_overlap(
+            self.theirs.swept_box,
+            |&NewElement { points: [a, b], place, swept_box }| {
+                let edge = (our_first.0, our_first.1 + place);
+                self.theirs.bounds.edges.for_each_overlap(&swept_box, |at| {
+                    let [c, d] = self.theirs.edges[at];
+                    let is_joined = a == c || a == d || b == c || b == d;
+                    if !is_joined && (edge < (their_first.0, their_first.1 + at) || self.is_kept(&[c, d])) {
+                        found.push(([a, b], [c, d]));
+                    }
+                });
+            },
+        );
     }
 }
 
 /// Two cloths, or one and itself, and their contact material.
-struct ClothPair<'a, R> {
+pub(super) struct ClothPair<'a, R> {
     search: &'a ClothSearch<'a, R>,
     material: &'a ContactMaterial<R>,
     /// Contact thickness in metres, and interaction range in thicknesses.
@@ -184,7 +223,7 @@ struct ClothPair<'a, R> {
 
 impl<'a, R: Real> ClothPair<'a, R> {
     /// `None` where the two do not collide.
-    fn new(search: &'a ClothSearch<'a, R>, cloths: [usize; 2]) -> Option<Self> {
+    pub(super) fn new(search: &'a ClothSearch<'a, R>, cloths: [usize; 2]) -> Option<Self> {
         let material = search.materials[cloths[0] * search.input.cloths.len() + cloths[1]].as_ref()?;
         // Free points have no shape at rest, so they have no neighbours.
         let is_shaped =

@@ -51,7 +51,19 @@ pub(super) struct ClothSearch<'a, R> {
     pub(super) untangling: &'a Untangling,
     pub(super) input: SearchInput<'a, R>,
     pub(super) group_bounds: &'a [GroupBounds],
+    /// In metres, by which all boxes are larger.
+    pub(super) margin: f32,
     pub(super) bounds_violated: &'a [bool],
+    /// By group.
+    pub(super) new_bounds: &'a [NewBounds],
+}
+
+/// Which points of a group have new bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NewBounds {
+    None,
+    Some,
+    All,
 }
 
 impl<R: Real> ClothSearch<'_, R> {
@@ -66,6 +78,7 @@ impl<R: Real> ClothSearch<'_, R> {
             first_edge: (*cloth as usize, own.edges.start),
             swept_box: &self.elements.swept_boxes[group as usize],
             bounds: &self.group_bounds[group as usize],
+            new_bounds: self.new_bounds[group as usize],
         }
     }
 
@@ -73,11 +86,6 @@ impl<R: Real> ClothSearch<'_, R> {
     #[inline(always)]
     pub(super) fn has_new_bound(&self, points: &[u32]) -> bool {
         points.iter().any(|&point| self.bounds_violated[point as usize])
-    }
-
-    /// Whether all points of a group have new bounds.
-    pub(super) fn all_have_new_bounds(&self, group: u32) -> bool {
-        self.elements.points_of(group as usize).iter().all(|&point| self.bounds_violated[point as usize])
     }
 }
 
@@ -91,6 +99,7 @@ pub(super) struct SearchedGroup<'a> {
     /// Swept box of the whole group.
     pub(super) swept_box: &'a SweptBox,
     pub(super) bounds: &'a GroupBounds,
+    pub(super) new_bounds: NewBounds,
 }
 
 impl SearchedGroup<'_> {

@@ -1,0 +1,201 @@
+//! The swept positions of points over a candidate interval in single precision, and lower bounds on the distance of two
+//! elements from them.
+
+use crate::contact::cloth::motion_bounds::Trajectory;
+use crate::contact::narrow_phase::{gap_along, shortest_line};
+use crate::math::{Lanes as _, Real, add, dot, scale, sub};
+
+/// The points of two elements.
+pub type ElementPoints<const N: usize, const M: usize> = ([u32; N], [u32; M]);
+
+/// The swept position of each point.
+#[derive(Debug, Default)]
+pub struct SweptPoints {
+    /// Position at the start and at the end in metres from a common origin, and the radius around both.
+    ends: Vec<[[f32; 4]; 2]>,
+}
+
+/// Relative rounding error of a position.
+pub const ROUNDING: f32 = 1e-6;
+
+impl SweptPoints {
+    /// Resizes to `points` points.
+    pub fn resize(&mut self, points: usize) {
+        self.ends.resize(points, [[0.0; 4]; 2]);
+    }
+
+    /// Sets a point from its trajectory. `anchor` is in metres from the origin. Returns the balls at the start
+    /// and at the end.
+    #[inline]
+    pub fn set<R: Real>(
+        &mut self,
+        point: usize,
+        trajectory: &Trajectory<R>,
+        anchor: [f64; 3],
+    ) -> [([f32; 3], f32); 2] {
+        let [start, end] = [R::ZERO, R::ONE].map(|share| {
+            let moved = trajectory.at(share);
+            std::array::from_fn::<f32, 3, _>(|axis| (anchor[axis] + moved[axis].to_f64()) as f32)
+        });
+        let size = |[x, y, z]: [f32; 3]| x.abs() + y.abs() + z.abs();
+        let radius = trajectory.radius.to_f64() as f32 + (size(start) + size(end)) * ROUNDING;
+        let row = |[x, y, z]: [f32; 3]| [x, y, z, radius];
+        self.ends[point] = [row(start), row(end)];
+        [(start, radius), (end, radius)]
+    }
+
+    /// A lower bound on the distance of two elements in metres, from a share of the candidate interval on.
+    #[inline(always)]
+    pub fn min_distance<const N: usize, const M: usize>(
+        &self,
+        (ours, theirs): ElementPoints<N, M>,
+        share: f32,
+    ) -> f32 {
+        let mut start = ([[0.0; 3]; N], [[0.0; 3]; M]);
+        let (mut end, mut radii) = (start, [0.0f32; 2]);
+        // Loops, because maps over these arrays are not inlined.
+        for k in 0..N {
+            let radius;
+            ([start.0[k], end.0[k]], radius) = self.ends_from(ours[k], share);
+            radii[0] = radii[0].max(radius);
+        }
+        for k in 0..M {
+            let radius;
+            ([start.1[k], end.1[k]], radius) = self.ends_from(theirs[k], share);
+            radii[1] = radii[1].max(radius);
+        }
+        let (normal, _, distance) = shortest_line(start);
+        distance.min(gap_along(normal, &end)) - (radii[0] + radii[1])
+    }
+
+    /// Position at a share of the candidate interval and at its end in metres from the common origin, and the radius.
+    #[inline(always)]
+    fn ends_from(&self, point: u32, share: f32) -> ([[f32; 3]; 2], f32) {
+        let xyz = |[x, y, z, _]: [f32; 4]| [x, y, z];
+        let [start, end] = self.ends[point as usize];
+        let (first, last) = (xyz(start), xyz(end));
+        let first = if share > 0.0 { add(first, scale(sub(last, first), share)) } else { first };
+        ([first, last], start[3])
+    }
+
+    /// One bit for each of up to four pairs that keep `enough` metres from a share of the candidate interval on, along the
+    /// line between their centroids: most pairs whose boxes overlap do, and four take as long as one.
+    #[inline(always)]
+    pub fn separated_centroids<const N: usize, const M: usize>(
+        &self,
+        pairs: &[ElementPoints<N, M>],
+        share: f32,
+        enough: f32,
+    ) -> u32 {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|lane: usize| &pairs[if lane < pairs.len() { lane } else { 0 }]);
+        let mut ours = [self.four([a.0[0], b.0[0], c.0[0], d.0[0]], share); N];
+        for k in 1..N {
+            ours[k] = self.four([a.0[k], b.0[k], c.0[k], d.0[k]], share);
+        }
+        let mut theirs = [self.four([a.1[0], b.1[0], c.1[0], d.1[0]], share); M];
+        for k in 1..M {
+            theirs[k] = self.four([a.1[k], b.1[k], c.1[k], d.1[k]], share);
+        }
+        let line = sub(centroids(&ours), centroids(&theirs));
+        let mut gaps = [FourLanes::splat(0.0); 2];
+        for (end, gap) in gaps.iter_mut().enumerate() {
+            let (mut low, mut high) = (dot(line, ours[0].ends[end]), dot(line, theirs[0].ends[end]));
+            for point in &ours[1..] {
+                low = low.least(dot(line, point.ends[end]));
+            }
+            for point in &theirs[1..] {
+                high = high.most(dot(line, point.ends[end]));
+            }
+            *gap = low - high;
+        }
+        let needed = FourLanes::splat(enough) + largest_radius(&ours) + largest_radius(&theirs);
+        let length = dot(line, line).sqrt();
+        !(needed * length - gaps[0].least(gaps[1])).above_zero() & length.above_zero()
+    }
+
+    /// Four points by lane.
+    #[inline(always)]
+    fn four(&self, points: [u32; 4], share: f32) -> FourPoints {
+        let [a, b, c, d] = points.map(|point| self.ends[point as usize].map(FourLanes::from_array));
+        let [x, y, z, radius] = FourLanes::transpose([a[0], b[0], c[0], d[0]]);
+        let [u, v, w, _] = FourLanes::transpose([a[1], b[1], c[1], d[1]]);
+        let mut start = [x, y, z];
+        if share > 0.0 {
+            let share = FourLanes::splat(share);
+            start = [x + (u - x) * share, y + (v - y) * share, z + (w - z) * share];
+        }
+        FourPoints { ends: [start, [u, v, w]], radius }
+    }
+}
+
+type FourLanes = <f32 as Real>::Lanes;
+
+/// The swept positions of four points, by lane.
+#[derive(Clone, Copy)]
+struct FourPoints {
+    ends: [[FourLanes; 3]; 2],
+    radius: FourLanes,
+}
+
+/// The centroids of four elements at the start.
+#[inline(always)]
+fn centroids<const K: usize>(points: &[FourPoints; K]) -> [FourLanes; 3] {
+    let mut sum = points[0].ends[0];
+    for point in &points[1..] {
+        for axis in 0..3 {
+            sum[axis] = sum[axis] + point.ends[0][axis];
+        }
+    }
+    let share = FourLanes::splat(1.0 / K as f32);
+    [sum[0] * share, sum[1] * share, sum[2] * share]
+}
+
+#[inline(always)]
+fn largest_radius<const K: usize>(points: &[FourPoints; K]) -> FourLanes {
+    points[1..].iter().fold(points[0].radius, |most, point| most.most(point.radius))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    impl SweptPoints {
+        /// The least distance of two elements without their radii, at both ends.
+        fn nearest<const N: usize, const M: usize>(&self, pair: ElementPoints<N, M>, share: f32) -> f32 {
+            let ours = pair.0.map(|point| self.ends_from(point, share));
+            let theirs = pair.1.map(|point| self.ends_from(point, share));
+            let largest = |radius: f32, &(_, next): &([[f32; 3]; 2], f32)| radius.max(next);
+            let radius = ours.iter().fold(0.0, largest) + theirs.iter().fold(0.0, largest);
+            let at = |end: usize| shortest_line((ours.map(|p| p.0[end]), theirs.map(|p| p.0[end]))).2;
+            at(0).min(at(1)) - radius
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn pairs_with_separated_centroids_are_at_least_that_far_apart(
+            ends in proptest::collection::vec(proptest::array::uniform2(proptest::array::uniform4(-1.0..1.0f32)), 20),
+            share in 0.0..1.0f32,
+            enough in 0.0..0.2f32,
+        ) {
+            let ends = ends.into_iter().map(|ends| ends.map(|[x, y, z, radius]| [x, y, z, 0.1 * radius.abs()])).collect();
+            let points = SweptPoints { ends };
+            let edges: Vec<ElementPoints<2, 2>> = (0..4).map(|k| ([4 * k, 4 * k + 1], [4 * k + 2, 4 * k + 3])).collect();
+            let faces: Vec<ElementPoints<1, 3>> = (0..3).map(|k| ([4 * k], [4 * k + 1, 4 * k + 2, 4 * k + 3])).collect();
+            let of_edges = points.separated_centroids(&edges, share, enough);
+            let of_faces = points.separated_centroids(&faces, share, enough);
+            for lane in 0..4 {
+                if of_edges & (1 << lane) != 0 {
+                    prop_assert!(points.nearest(edges[lane], share) >= enough - 1e-5);
+                }
+                if lane < 3 && of_faces & (1 << lane) != 0 {
+                    prop_assert!(points.nearest(faces[lane], share) >= enough - 1e-5);
+                }
+                // A pair has the same bit by itself.
+                prop_assert_eq!(points.separated_centroids(&edges[lane..=lane], share, enough) & 1, of_edges >> lane & 1);
+            }
+        }
+    }
+}
