@@ -402,7 +402,7 @@ checkpoint_struct!([R: Real] ClothContacts<R> {
     columns: [bounds_violated, interval_start],
     values: [materials, interval],
     parts: [elements, trajectories, cache, untangling],
-    rebuilt: [buffers, frozen],
+    rebuilt: [buffers, frozen, local_anchors],
 });
 
 checkpoint_struct!([R: Real] Trajectories<R> { columns: [origin, travel], values: [], parts: [], rebuilt: [] });

@@ -209,8 +209,11 @@ impl<R: Real> ContactPass<'_, R> {
         work: impl FnOnce(&mut ContactCache<R>, &ClothStep<'_, R>, &ThreadPool) -> T,
     ) -> Option<T> {
         let ContactSystem { cloth_contacts, material_maps, .. } = &mut *self.contact;
-        let ClothContacts { cache, materials, .. } = cloth_contacts.as_mut()?;
-        let step = ClothStep::new(self.state, materials, material_maps, self.schedule.h);
+        let ClothContacts { cache, materials, local_anchors, .. } = cloth_contacts.as_mut()?;
+        let step = ClothStep {
+            local_anchors: Some(&*local_anchors),
+            ..ClothStep::new(self.state, materials, material_maps, self.schedule.h)
+        };
         Some(work(cache, &step, self.pool))
     }
 }

@@ -6,6 +6,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::bytes::{Encode, Reader, encode_struct};
+use crate::contact::cloth::local_anchors::LocalAnchors;
 use crate::contact::cloth::swept_points::ElementPoints;
 use crate::contact::material::{ContactMaterial, ContactPoints, MaterialMaps};
 use crate::contact::narrow_phase::{ElementPositions, gap_along, shortest_line};
@@ -22,6 +23,8 @@ pub struct ClothStep<'a, R> {
     pub start: &'a [Row4<R>],
     /// The anchors that displacements are relative to, in metres.
     pub origins: &'a [[f64; 3]],
+    /// For fast gaps; `None` where all are to be computed.
+    pub local_anchors: Option<&'a LocalAnchors<R>>,
     /// Friction anchors; `None` outside of contact passes.
     pub anchors: Option<FrictionAnchors<'a, R>>,
     /// The cloths whose contacts are resolved; all where it is empty.
@@ -72,6 +75,7 @@ impl<'a, R: Real> ClothStep<'a, R> {
             writer,
             start,
             origins,
+            local_anchors: None,
             anchors: None,
             mask: &[],
             materials,
@@ -264,6 +268,15 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             return most;
         }
         materials[self.params.material as usize].as_ref().map_or(most, there)
+    }
+
+    /// Whether the gap along the normal exceeds `least` metres and any rounding error, as far as a fast test can tell.
+    #[inline(always)]
+    pub(super) fn certainly_exceeds(&self, step: &ClothStep<'_, R>, least: R) -> bool {
+        let min_gap = |anchors: &LocalAnchors<R>| {
+            anchors.min_gap::<N, M>(self.normal, self.points(), |point| step.row(point))
+        };
+        step.local_anchors.and_then(min_gap).is_some_and(|gap| gap > least)
     }
 
     /// The gap along the normal.

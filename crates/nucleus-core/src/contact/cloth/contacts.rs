@@ -8,6 +8,7 @@ use crate::contact::cloth::colouring::Place;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups};
 use crate::contact::cloth::group_bounds::GroupBounds;
+use crate::contact::cloth::local_anchors::LocalAnchors;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::query::FoundContacts;
 use crate::contact::cloth::search::{NewBounds, RefreshKind, SearchInput};
@@ -27,6 +28,8 @@ pub struct ClothContacts<R> {
     pub materials: Vec<Option<ContactMaterial<R>>>,
     /// The motion bound of each point over the candidate interval.
     pub trajectories: Trajectories<R>,
+    /// Anchors for fast gaps.
+    pub local_anchors: LocalAnchors<R>,
     /// Displacements at the start of the candidate interval.
     pub interval_start: Vec<Row4<R>>,
     /// The candidate interval, as shares of the frame.
@@ -51,6 +54,7 @@ impl<R: Real> ClothContacts<R> {
             elements: ElementGroups::new(cloths, anchors),
             materials: Vec::new(),
             trajectories: Trajectories::new(rows),
+            local_anchors: LocalAnchors::default(),
             interval_start: vec![Row4::ZERO; rows],
             interval: [1.0, 0.0], // expired
             bounds_violated: vec![true; rows],
@@ -115,7 +119,7 @@ impl<R: Real> ClothContacts<R> {
         pool: &ThreadPool,
     ) {
         let (anchors, points) = (input.anchors, || input.cloths.iter().flat_map(ClothModel::points));
-        let Self { elements, bounds_violated, buffers, trajectories, .. } = self;
+        let Self { elements, bounds_violated, buffers, trajectories, local_anchors, .. } = self;
         let SearchBuffers { bounds, group_bounds, bounds_margin, changed, groups, .. } = buffers;
         let violated = points().filter(|&point| bounds_violated[point as usize]);
         if refresh.is_incremental() {
@@ -132,6 +136,7 @@ impl<R: Real> ClothContacts<R> {
         }
         groups.iter().for_each(|&group| elements.set_bound(group, bounds, margin));
         elements.refit();
+        local_anchors.update(anchors, violated.clone(), elements.extent());
         let group_bounds = DisjointSlice::new(group_bounds);
         pool.parallel_for(groups.len().div_ceil(GROUPS_PER_TASK), |task| {
             for &group in groups.chunks(GROUPS_PER_TASK).nth(task).unwrap_or_default() {

@@ -131,6 +131,12 @@ impl ElementGroups {
         }
     }
 
+    /// The largest coordinate of any swept box, in metres.
+    pub fn extent(&self) -> f64 {
+        let coordinates = self.bvhs.iter().flat_map(|bvh| bvh.bounds().corners()).flatten();
+        coordinates.map(|x| f64::from(x.abs())).filter(|x| x.is_finite()).fold(0.0, f64::max)
+    }
+
     /// Calls `found` with each group whose leaf overlaps a box, cloth by cloth.
     #[inline]
     pub fn query(&self, target: &Aabb, mut found: impl FnMut(u32)) {

@@ -10,6 +10,7 @@
 //! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`], [`new_elements`], [`swept_points`] |
 //! | the contacts by kind, in batches that threads share | [`cache`], [`batches`], [`colouring`] |
 //! | one contact | [`contact`] |
+//! | a fast lower bound on its gap | [`local_anchors`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
 //! | its certificate, truncation and freezing | [`certify`] |
 //! | intersecting meshes: detection, and untangling | [`intersections`], [`untangling`] |
@@ -26,6 +27,7 @@ mod element_bounds;
 pub mod elements;
 mod group_bounds;
 pub mod intersections;
+pub mod local_anchors;
 pub mod motion_bounds;
 mod new_elements;
 pub mod pass;

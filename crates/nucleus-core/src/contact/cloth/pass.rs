@@ -31,6 +31,7 @@ pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSyste
         cloth_contacts.bounds_violated.fill(true);
     }
     cloth_contacts.materials = materials;
+    cloth_contacts.local_anchors.clear();
     if !cloth_contacts.is_enabled() {
         cloth_contacts.bounds_violated.fill(true);
         cloth_contacts.cache = ContactCache::default(); // its bounds would not be checked
@@ -72,7 +73,8 @@ pub fn resolve_cloth_contacts<R: Real>(
         return;
     };
     let mask = &contact_mask[..];
-    let ClothContacts { elements, materials, cache, interval_start, untangling, .. } = cloth_contacts;
+    let ClothContacts { elements, materials, cache, interval_start, local_anchors, untangling, .. } =
+        cloth_contacts;
     if untangling.any() {
         let most = elements.edge_length * UNTANGLING_SPEED * schedule.h;
         let step = ClothStep { mask, ..ClothStep::new(state, materials, material_maps, schedule.h) };
@@ -82,6 +84,7 @@ pub fn resolve_cloth_contacts<R: Real>(
     let thickness_scale = R::from_f64(thickness_scale);
     let step = ClothStep {
         thickness_scale,
+        local_anchors: Some(&*local_anchors),
         anchors,
         mask,
         ..ClothStep::new(state, materials, material_maps, schedule.h)

@@ -21,6 +21,9 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// Pushes the two apart if they are nearer than their thickness. Returns whether they were.
     #[inline]
     pub fn resolve(&mut self, step: &ClothStep<'_, R>) -> bool {
+        if self.certainly_exceeds(step, self.params.thickness * step.thickness_scale) {
+            return false;
+        }
         let now = self.end_positions(step);
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
         let gap = self.gap(&now);
