@@ -14,7 +14,7 @@ const fn cloth(evaluations: u32) -> Setting {
 const STIFFNESS: f64 = 10_000.0;
 
 /// Target time of a link evaluation in nanoseconds, on one core at [`LINK_SIZE`].
-const LINK_TARGET: f64 = 3.5;
+const LINK_TARGET: f64 = 1.2;
 const LINK_SIZE: u32 = 129;
 
 /// Points along the side of the sheets of the scaling test.

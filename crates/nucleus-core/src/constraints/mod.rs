@@ -16,7 +16,7 @@
 //!
 //! | Effect | Rows | Read |
 //! |---|---|---|
-//! | stretch, compression, shear | links | [`stretch`] |
+//! | stretch, compression, shear | links | [`stretch`], their sweeps in [`projection`] |
 //! | warp and weft of woven cloth; compression up to the buckling load | links | [`weave`] |
 //! | links that are all corrected from the same state | links | [`parallel`] |
 //! | bending (Bergou et al. 2006) | hinges of four or six points | [`bend`], its rows in [`hinge`] |
@@ -44,6 +44,7 @@ pub mod liquid;
 pub mod parallel;
 pub mod plastic;
 pub mod pressure;
+pub mod projection;
 pub mod row_loops;
 pub mod shape;
 pub mod strength_map;

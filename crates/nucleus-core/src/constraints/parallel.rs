@@ -11,9 +11,10 @@ use crate::model::rows::{RowBatch, RowList};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
+use super::projection::{LinkLaw, LinkProjection};
 use super::row_loops::for_all_rows;
 use super::strength_map::{StrengthGroup, Uniform};
-use super::stretch::{LinkGroup, LinkLaw, LinkProjection, LinkStrength};
+use super::stretch::{LinkGroup, LinkStrength};
 use super::weave::{WeaveGroup, WeaveStrength, Woven};
 
 /// The links of one effect of a cloth, and the columns of the same layout.
@@ -116,7 +117,7 @@ impl<R: Real> Jacobi<'_, R> {
         let projection = LinkProjection::new(strength);
         for (group, law) in groups {
             let [a, b] = group.ends.map(|ends| ends.map(|end| self.points[end as usize].lanes()));
-            let push = projection.push(group, law, [a, b]);
+            let push = projection.correction(group, law, [a, b]).rows();
             for lane in 0..4 {
                 let [end_a, end_b] = group.ends.map(|ends| ends[lane]);
                 let valence = |end: u32| self.valence[(end - self.first) as usize];

@@ -73,6 +73,8 @@ impl<R: Real, const N: usize> StrengthRow<R, N> {
 impl<R: Real, const N: usize> Row for StrengthRow<R, N> {
     type Group = StrengthGroup<R>;
     const POINTS: usize = N;
+    // Like the rows of links, which are those with two points.
+    const GROUPS: usize = if N == 2 { 2 } else { 1 };
 
     fn point(&self, k: usize) -> u32 {
         self.points[k]

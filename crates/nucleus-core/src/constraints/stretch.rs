@@ -1,22 +1,19 @@
 //! Stretch, compression and shear: links keep their length.
 //!
-//! C(x) = |x_b - x_a| - l, projected by inverse mass (Müller et al. 2007, §4.1) with the compliance of Macklin et al.
-//! 2016, eq. 18. The multiplier starts at zero in every sweep, because a time step has one sweep only (Physical), or
-//! there is no compliance (Classic).
+//! This file has their rows; [`projection`](super::projection) has their sweeps.
 //!
 //! Shear rows are links too: the cross links of quads, swept with the strength of `shearResistance`.
 
 use nalgebra::Vector3;
 
-use crate::math::{Lanes, Real, Row4};
+use crate::math::{Real, Row4};
 use crate::model::rows::Row;
 use crate::model::surface::Surface;
 use crate::model::topology::{Link, shear_links};
 use crate::model::vertex_maps::mean;
 use crate::model::weave::woven_links;
-use crate::parallel::disjoint::DisjointSlice;
 
-use super::strength_map::{Sides, StrengthGroup, StrengthMap, Uniform};
+use super::strength_map::Sides;
 
 /// Four links side by side. 28 bytes a link in `f32`.
 #[derive(Debug, Clone, Copy)]
@@ -79,6 +76,7 @@ pub fn shear_rows<R: Real>(
 impl<R: Real> Row for LinkRow<R> {
     type Group = LinkGroup<R>;
     const POINTS: usize = 2;
+    const GROUPS: usize = 2;
 
     fn point(&self, k: usize) -> u32 {
         self.ends[k]
@@ -129,132 +127,5 @@ impl<R: Real> LinkGroup<R> {
             let rest = self.rest_length[lane] * rest_scale;
             if rest > R::ZERO { crate::math::dot(d, d).sqrt() / rest - R::ONE } else { R::ZERO }
         })
-    }
-}
-
-/// How four links side by side resist. By itself a strength map scales the compliance of the sweep.
-pub trait LinkLaw<R: Real>: StrengthMap<R> {
-    /// The multipliers of the corrections, over the lengths of the links, from those lengths and the sums of the
-    /// inverse masses.
-    #[inline(always)]
-    fn multiplier(
-        self,
-        projection: &LinkProjection<R::Lanes>,
-        group: &LinkGroup<R>,
-        length_and_mobility: [R::Lanes; 2],
-    ) -> R::Lanes {
-        projection.multiplier(group, self, length_and_mobility)
-    }
-}
-
-impl<R: Real> LinkLaw<R> for Uniform {}
-impl<R: Real> LinkLaw<R> for &StrengthGroup<R> {}
-
-/// Sweeps the links of `groups` once, each group with its law.
-///
-/// # Safety
-/// The rows of a group share no point, and no other task of the loop touches the points of `groups`.
-#[allow(unsafe_code)]
-#[inline]
-pub unsafe fn relax<'a, R: Real, P: LinkLaw<R>>(
-    points: DisjointSlice<'_, Row4<R>>,
-    groups: impl Iterator<Item = (&'a LinkGroup<R>, P)>,
-    strength: &LinkStrength<R>,
-) {
-    let projection = LinkProjection::new(strength);
-    for (group, law) in groups {
-        // SAFETY: the caller's promise.
-        let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
-        let push = projection.push(group, law, [a, b]);
-        for lane in 0..4 {
-            let [end_a, end_b] = group.ends.map(|end| end[lane]);
-            let moved_a = a[lane] + a[lane].splat_last() * push[lane];
-            let moved_b = b[lane] - b[lane].splat_last() * push[lane];
-            // SAFETY: the caller's promise.
-            unsafe {
-                points.set(end_a, Row4(moved_a.to_array()));
-                points.set(end_b, Row4(moved_b.to_array()));
-            }
-        }
-    }
-}
-
-/// The correction of links in one sweep, with its constants in lanes.
-pub struct LinkProjection<L> {
-    share: [L; 2],
-    compliance: [L; 2],
-    rest_scale: L,
-    tiny: L,
-}
-
-impl<L: Copy> LinkProjection<L> {
-    /// For a sweep of this strength.
-    #[inline(always)]
-    pub fn new<R: Real<Lanes = L>>(strength: &LinkStrength<R>) -> Self
-    where
-        L: Lanes<R>,
-    {
-        let both = |sides: Sides<R>| [L::splat(sides.above), L::splat(sides.below)];
-        Self {
-            share: both(strength.share),
-            compliance: both(strength.compliance),
-            rest_scale: L::splat(strength.rest_scale),
-            tiny: L::splat(R::MIN_DENOMINATOR),
-        }
-    }
-
-    /// The multipliers of links that all have the compliance of the sweep, times a vertex map; see [`LinkLaw`].
-    #[inline(always)]
-    pub fn multiplier<R: Real<Lanes = L>, P: StrengthMap<R>>(
-        &self,
-        group: &LinkGroup<R>,
-        map: P,
-        [length, mobility]: [L; 2],
-    ) -> L
-    where
-        L: Lanes<R>,
-    {
-        let c = length - L::from_array(group.rest_length) * self.rest_scale;
-        let compliance = c.choose_by_sign(self.compliance[0], self.compliance[1]);
-        let (share, compliance) = map.scale(c, self.share(c), compliance);
-        let softness = compliance * L::from_array(group.slenderness);
-        // For two pinned ends, and for zero length, the numerator or the difference is zero too.
-        share * c / ((mobility + softness) * length + self.tiny)
-    }
-
-    /// The share of the error that a sweep removes, by the sign of `c`.
-    #[inline(always)]
-    pub fn share<R: Real<Lanes = L>>(&self, c: L) -> L
-    where
-        L: Lanes<R>,
-    {
-        c.choose_by_sign(self.share[0], self.share[1])
-    }
-
-    /// Factor on all rest lengths.
-    #[inline(always)]
-    pub fn rest_scale(&self) -> L {
-        self.rest_scale
-    }
-
-    /// The vectors by which the first ends of four links move, over their inverse masses, in metres times kilograms; the
-    /// second ends move the other way. `a` and `b` are the rows of the ends.
-    #[inline(always)]
-    pub fn push<R: Real<Lanes = L>, P: LinkLaw<R>>(
-        &self,
-        group: &LinkGroup<R>,
-        law: P,
-        [a, b]: [[L; 4]; 2],
-    ) -> [L; 4]
-    where
-        L: Lanes<R>,
-    {
-        let [ax, ay, az, w_a] = L::transpose(a);
-        let [bx, by, bz, w_b] = L::transpose(b);
-        let [sx, sy, sz] = group.span.map(L::from_array);
-        let (dx, dy, dz) = (sx + (bx - ax), sy + (by - ay), sz + (bz - az));
-        let length = (dx * dx + dy * dy + dz * dz).sqrt();
-        let lambda = law.multiplier(self, group, [length, w_a + w_b]);
-        L::transpose([lambda * dx, lambda * dy, lambda * dz, L::splat(R::ZERO)])
     }
 }

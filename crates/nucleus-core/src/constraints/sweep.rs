@@ -7,11 +7,12 @@
 use crate::constraints::angle::{AngleGroup, AngleStrength};
 use crate::constraints::hinge::HingeGroup;
 use crate::constraints::parallel::LinkLists;
+use crate::constraints::projection::{relax, relax_uniform};
 use crate::constraints::row_loops::for_interface_rows;
 use crate::constraints::strength_map::{StrengthGroup, Uniform};
 use crate::constraints::stretch::{LinkGroup, LinkStrength};
 use crate::constraints::weave::{WeaveGroup, WeaveStrength, Woven};
-use crate::constraints::{angle, bend, parallel, stretch};
+use crate::constraints::{angle, bend, parallel};
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::model::rows::{RowBatch, RowList};
@@ -128,20 +129,16 @@ impl<R: Real> Sweeper<'_, R> {
 
     #[allow(unsafe_code)]
     fn links(&self, lists: &LinkLists<'_, R>, batch: RowBatch, strength: &LinkStrength<R>) {
-        let (rows, maps) = (lists.rows.batch(batch).iter(), lists.maps(batch).iter());
-        if let Some((weave, law)) = lists.weave {
-            let weave = weave.batch(batch);
-            // SAFETY: see `Sweeper`.
-            unsafe { self.woven(rows, (weave, law), maps, strength) };
-            return;
-        }
+        let (rows, maps) = (lists.rows.batch(batch), lists.maps(batch).iter());
         // SAFETY: see `Sweeper`.
         unsafe {
-            match (self.backward, maps.len() > 0) {
-                (false, false) => stretch::relax(self.points, rows.map(unmapped), strength),
-                (true, false) => stretch::relax(self.points, rows.rev().map(unmapped), strength),
-                (false, true) => stretch::relax(self.points, rows.zip(maps), strength),
-                (true, true) => stretch::relax(self.points, rows.zip(maps).rev(), strength),
+            match (lists.weave, maps.len() > 0, self.backward) {
+                (Some((weave, law)), ..) => {
+                    self.woven(rows.iter(), (weave.batch(batch), law), maps, strength)
+                }
+                (None, false, backward) => relax_uniform::<R, 2>(self.points, rows, backward, strength),
+                (None, true, false) => relax(self.points, rows.iter().zip(maps), strength),
+                (None, true, true) => relax(self.points, rows.iter().zip(maps).rev(), strength),
             }
         }
     }
@@ -162,10 +159,10 @@ impl<R: Real> Sweeper<'_, R> {
         // SAFETY: the caller's promise.
         unsafe {
             match (self.backward, maps.len() > 0) {
-                (false, false) => stretch::relax(self.points, rows.map(plain), strength),
-                (true, false) => stretch::relax(self.points, rows.rev().map(plain), strength),
-                (false, true) => stretch::relax(self.points, rows.zip(maps).map(mapped), strength),
-                (true, true) => stretch::relax(self.points, rows.zip(maps).rev().map(mapped), strength),
+                (false, false) => relax(self.points, rows.map(plain), strength),
+                (true, false) => relax(self.points, rows.rev().map(plain), strength),
+                (false, true) => relax(self.points, rows.zip(maps).map(mapped), strength),
+                (true, true) => relax(self.points, rows.zip(maps).rev().map(mapped), strength),
             }
         }
     }

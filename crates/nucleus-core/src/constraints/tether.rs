@@ -9,7 +9,7 @@
 //! The lengths follow from the mesh and the pins of a frame, so a checkpoint stores nothing of them.
 
 use crate::input::PointId;
-use crate::math::{Lanes, Real, Row4, dot, sub};
+use crate::math::{Real, Row4, dot, sub};
 use crate::model::ClothModel;
 use crate::model::builder::Cloth;
 use crate::model::geodesic::{LABELS, Label, RestDistances};
@@ -18,8 +18,9 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
-use super::strength_map::{Sides, Uniform};
-use super::stretch::{LinkGroup, LinkProjection, LinkRow, LinkStrength};
+use super::projection::relax_uniform;
+use super::strength_map::Sides;
+use super::stretch::{LinkGroup, LinkRow, LinkStrength};
 
 /// The tethers of one cloth; empty where it has none.
 #[derive(Debug, Clone, Default)]
@@ -83,6 +84,7 @@ impl<R: Real> Tethers<R> {
             self.starts.push(self.groups.len());
             let idle = LinkRow::idle(cloth.blocks.padding_point(block));
             for label in (0..LABELS).rev() {
+                let first_group = self.groups.len();
                 let (mut four, mut filled) = ([idle; 4], 0);
                 for row in cloth.blocks.range(block) {
                     let labels = &self.labels[(row - first) as usize];
@@ -101,6 +103,9 @@ impl<R: Real> Tethers<R> {
                     }
                 }
                 self.groups.extend((filled > 0).then(|| LinkRow::group(four)));
+                while !(self.groups.len() - first_group).is_multiple_of(LinkRow::<R>::GROUPS) {
+                    self.groups.push(LinkRow::group([idle; 4]));
+                }
             }
         }
         self.starts.push(self.groups.len());
@@ -116,37 +121,14 @@ impl<R: Real> Tethers<R> {
         };
         let points = DisjointSlice::new(displacement);
         pool.parallel_for(self.starts.len().saturating_sub(1), |block| {
-            let projection = LinkProjection::new(&strength);
-            for group in &self.groups[self.starts[block]..self.starts[block + 1]] {
-                // SAFETY: the first ends are points of this block, which no other task touches; the second ends are pins,
-                // which no task writes, or the padding point of this block.
-                #[allow(unsafe_code)]
-                unsafe {
-                    shorten(points, group, &projection);
-                }
+            let groups = &self.groups[self.starts[block]..self.starts[block + 1]];
+            // SAFETY: the first ends are points of this block, which no other task touches, each once per label; the
+            // second ends are pins, which no task writes, or the padding point of this block.
+            #[allow(unsafe_code)]
+            unsafe {
+                relax_uniform::<R, 1>(points, groups, false, &strength);
             }
         });
-    }
-}
-
-/// Moves the first ends of four links towards the second ends.
-///
-/// # Safety
-/// No other task touches the first ends of the group, and none writes the second ends.
-#[allow(unsafe_code)]
-#[inline(always)]
-unsafe fn shorten<R: Real>(
-    points: DisjointSlice<'_, Row4<R>>,
-    group: &LinkGroup<R>,
-    projection: &LinkProjection<R::Lanes>,
-) {
-    // SAFETY: the caller's promise.
-    let [a, b] = group.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
-    let push = projection.push(group, Uniform, [a, b]);
-    for lane in 0..4 {
-        let moved = a[lane] + a[lane].splat_last() * push[lane];
-        // SAFETY: the caller's promise.
-        unsafe { points.set(group.ends[0][lane], Row4(moved.to_array())) };
     }
 }
 

@@ -16,8 +16,9 @@
 //! shortened by the strain ε beyond (elastica, first order). With `buckling` a link shorter than at rest resists with the
 //! smaller of the two. It then stands for the folds that the mesh cannot show; those that it can show buckle first.
 
+use crate::constraints::projection::{LinkLaw, LinkProjection};
 use crate::constraints::strength_map::{Sides, StrengthMap};
-use crate::constraints::stretch::{LinkGroup, LinkLaw, LinkProjection, LinkRow};
+use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::math::{Lanes, Real};
 use crate::model::rows::Row;
 use crate::schedule::resistance::PhysicalStiffness;
@@ -46,6 +47,7 @@ impl<R: Real> WeaveRow<R> {
 impl<R: Real> Row for WeaveRow<R> {
     type Group = WeaveGroup<R>;
     const POINTS: usize = 2;
+    const GROUPS: usize = LinkRow::<R>::GROUPS;
 
     fn point(&self, k: usize) -> u32 {
         self.ends[k]
@@ -131,15 +133,15 @@ impl<R: Real, P: StrengthMap<R>> LinkLaw<R> for Woven<'_, R, P> {
         let splat = R::Lanes::splat;
         let (zero, one, tiny) = (splat(R::ZERO), splat(R::ONE), splat(R::MIN_DENOMINATOR));
         let WeaveStrength { warp, weft, shear, buckling } = self.strength;
-        let rest = R::Lanes::from_array(group.rest_length) * projection.rest_scale();
-        let slenderness = R::Lanes::from_array(group.slenderness);
-        let c = length - rest;
+        let [rest, slenderness] = [group.rest_length, group.slenderness].map(R::Lanes::from_array);
+        let [c, share, _] = projection.violation(length, rest);
+        let rest = rest * projection.rest_scale();
         let along = R::Lanes::from_array(self.group.warp);
         let across = one - along;
         let side = |sides: &Sides<R>| c.choose_by_sign(splat(sides.above), splat(sides.below));
         let threads = along * along * side(warp) + across * across * side(weft);
         let compliance = threads + along * across * splat(*shear);
-        let (share, compliance) = self.scale(c, projection.share(c), compliance);
+        let (share, compliance) = self.scale(c, share, compliance);
         let elastic = share * c / ((mobility + compliance * slenderness) * length + tiny);
         // λ = -P (2 l - c) / (2 l² s + P w) solves λ = -h² N (1 + ε/2) · width at the end of the step.
         let load = splat(*buckling);

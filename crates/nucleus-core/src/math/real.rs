@@ -26,7 +26,9 @@ pub trait Real:
     + 'static
 {
     /// Four of them side by side.
-    type Lanes: Lanes<Self>;
+    type Lanes: Lanes<Self, Array = [Self; 4]>;
+    /// Two times four of them side by side.
+    type Wide: Lanes<Self, Array = [[Self; 4]; 2]>;
     /// Zero.
     const ZERO: Self;
     /// One.
@@ -43,18 +45,22 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// The bits, for hashes.
     fn to_bits(self) -> u64;
+    /// Whether this machine has registers for [`Real::Wide`].
+    fn has_wide_lanes() -> bool;
 }
 
-/// Four scalars; every operation gives each lane the bits that a scalar would have.
+/// Four scalars, or two times four; every operation gives each lane the bits that a scalar would have.
 pub trait Lanes<R>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// The same scalar four times.
+    /// The scalars in memory.
+    type Array;
+    /// The same scalar in all lanes.
     fn splat(x: R) -> Self;
-    /// Four scalars.
-    fn from_array(x: [R; 4]) -> Self;
-    /// Four scalars.
-    fn to_array(self) -> [R; 4];
+    /// The lanes of these scalars.
+    fn from_array(x: Self::Array) -> Self;
+    /// The scalars of all lanes.
+    fn to_array(self) -> Self::Array;
     /// The square root of each.
     fn sqrt(self) -> Self;
     /// Lane by lane: `above` where `self` is above zero, else `below`.
@@ -65,9 +71,9 @@ pub trait Lanes<R>:
     fn most(self, other: Self) -> Self;
     /// One bit per lane, set where the lane is above zero.
     fn above_zero(self) -> u32;
-    /// The transposed 4 by 4 matrix.
+    /// The transposed 4 by 4 matrix, or two of them.
     fn transpose(rows: [Self; 4]) -> [Self; 4];
-    /// The last lane, four times.
+    /// The last lane of each four, four times.
     fn splat_last(self) -> Self;
 }
 
@@ -116,6 +122,7 @@ impl<R: Real> Div for Quad<R> {
 }
 
 impl<R: Real> Lanes<R> for Quad<R> {
+    type Array = [R; 4];
     #[inline(always)]
     fn splat(x: R) -> Self {
         Self([x; 4])
@@ -157,5 +164,71 @@ impl<R: Real> Lanes<R> for Quad<R> {
     #[inline(always)]
     fn splat_last(self) -> Self {
         Self([self.0[3]; 4])
+    }
+}
+
+/// Two times four scalars in two registers, for machines and scalars without wider ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Two<L>(pub [L; 2]);
+
+macro_rules! halfwise {
+    ($($operator:ident $method:ident;)*) => {$(
+        impl<L: Copy + $operator<Output = L>> $operator for Two<L> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self([self.0[0].$method(other.0[0]), self.0[1].$method(other.0[1])])
+            }
+        }
+    )*};
+}
+
+halfwise! { Add add; Sub sub; Mul mul; Div div; }
+
+impl<R: Real, L: Lanes<R, Array = [R; 4]>> Lanes<R> for Two<L> {
+    type Array = [[R; 4]; 2];
+    #[inline(always)]
+    fn splat(x: R) -> Self {
+        Self([L::splat(x); 2])
+    }
+    #[inline(always)]
+    fn from_array([low, high]: [[R; 4]; 2]) -> Self {
+        Self([L::from_array(low), L::from_array(high)])
+    }
+    #[inline(always)]
+    fn to_array(self) -> [[R; 4]; 2] {
+        [self.0[0].to_array(), self.0[1].to_array()]
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self([self.0[0].sqrt(), self.0[1].sqrt()])
+    }
+    #[inline(always)]
+    fn choose_by_sign(self, above: Self, below: Self) -> Self {
+        let choose = |half: usize| self.0[half].choose_by_sign(above.0[half], below.0[half]);
+        Self([choose(0), choose(1)])
+    }
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        Self([self.0[0].least(other.0[0]), self.0[1].least(other.0[1])])
+    }
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        Self([self.0[0].most(other.0[0]), self.0[1].most(other.0[1])])
+    }
+    #[inline(always)]
+    fn above_zero(self) -> u32 {
+        self.0[0].above_zero() | self.0[1].above_zero() << 4
+    }
+    #[inline(always)]
+    fn transpose([a, b, c, d]: [Self; 4]) -> [Self; 4] {
+        let half = |k: usize| L::transpose([a.0[k], b.0[k], c.0[k], d.0[k]]);
+        let (low, high) = (half(0), half(1));
+        let column = |k: usize| Self([low[k], high[k]]);
+        [column(0), column(1), column(2), column(3)]
+    }
+    #[inline(always)]
+    fn splat_last(self) -> Self {
+        Self([self.0[0].splat_last(), self.0[1].splat_last()])
     }
 }

@@ -41,6 +41,7 @@ arithmetic! {
 // SAFETY of every block below: SSE is part of the x86-64 baseline, and the loads and stores go through
 // references to four f32.
 impl Lanes<f32> for F32x4 {
+    type Array = [f32; 4];
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(unsafe { _mm_set1_ps(x) })

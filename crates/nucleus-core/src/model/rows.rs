@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use crate::model::blocks::Partition;
 
-/// Lane groups per task of interface rows.
+/// Lane groups per task of interface rows; a multiple of [`Row::GROUPS`].
 const GROUPS_PER_TASK: u32 = 32;
 
 /// A row before it is laid out; its points determine its block and colour.
@@ -19,6 +19,8 @@ pub trait Row: Copy {
     type Group;
     /// Points per row.
     const POINTS: usize;
+    /// Groups that are swept side by side: each colour has a multiple of them, so that they share no point.
+    const GROUPS: usize = 1;
     /// The `k`th point.
     fn point(&self, k: usize) -> u32;
     /// A row of the padding point only, which does nothing.
@@ -90,9 +92,11 @@ impl<G> RowList<G> {
     }
 
     fn push_groups<T: Row<Group = G>>(&mut self, rows: &[T], padding_point: u32) {
-        for four in rows.chunks(4) {
-            let row = |k: usize| four.get(k).copied().unwrap_or_else(|| T::idle(padding_point));
-            self.groups.push(T::group([row(0), row(1), row(2), row(3)]));
+        let idle = T::idle(padding_point);
+        for side_by_side in rows.chunks(4 * T::GROUPS) {
+            let row = |k: usize| side_by_side.get(k).copied().unwrap_or(idle);
+            let group = |k: usize| T::group([row(4 * k), row(4 * k + 1), row(4 * k + 2), row(4 * k + 3)]);
+            self.groups.extend((0..T::GROUPS).map(group));
         }
     }
 
@@ -218,6 +222,7 @@ mod tests {
     impl Row for Pair {
         type Group = [Pair; 4];
         const POINTS: usize = 2;
+        const GROUPS: usize = 2;
         fn point(&self, k: usize) -> u32 {
             if k == 0 { self.0 } else { self.1 }
         }
@@ -263,7 +268,7 @@ mod tests {
                 prop_assert!(!shares_a_point(&of_colour, points as u32));
             }
             for block in 0..blocks.len() {
-                prop_assert!(list.interior(block).iter().all(|group| !shares_a_point(&[*group], points as u32)));
+                prop_assert!(list.interior(block).chunks(2).all(|groups| !shares_a_point(groups, points as u32)));
                 prop_assert!(list.interior(block).iter().flatten().filter(|p| p.0 < points as u32)
                     .all(|p| blocks.of(p.0) == block as u32 && blocks.of(p.1) == block as u32));
             }
@@ -284,7 +289,7 @@ mod tests {
                 let real = list.interior(block).iter().flatten().filter(|p| p.0 < points as u32);
                 let order: Vec<u32> = real.map(|pair| pair.0 % 3).collect();
                 prop_assert!(order.is_sorted(), "{:?}", order);
-                prop_assert!(list.interior(block).iter().all(|group| !shares_a_point(&[*group], points as u32)));
+                prop_assert!(list.interior(block).chunks(2).all(|groups| !shares_a_point(groups, points as u32)));
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The links of all constraints: their state, and their rows by the number of free points.
 
 use crate::bytes::{Checkpoint, Encode, Reader, encode_struct};
-use crate::constraints::strength_map::Uniform;
-use crate::constraints::stretch::{self, LinkGroup, LinkRow};
+use crate::constraints::projection::relax_uniform;
+use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::input::links::{Link, LinkSide};
 use crate::input::{ClothId, PointId};
 use crate::math::{Real, Row4};
@@ -179,11 +179,11 @@ impl<R: Real> ConstraintLinks<R> {
         let plain = &self.plain;
         if plain.len() > 0 {
             for_batches(plain, blocks, pool, |batch| {
-                let groups = plain.batch(batch).iter().map(|group| (group, Uniform));
+                let groups = plain.batch(batch);
                 // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
                 #[allow(unsafe_code)]
                 unsafe {
-                    stretch::relax(points, groups, &pass.strength);
+                    relax_uniform::<R, 2>(points, groups, false, &pass.strength);
                 }
             });
         }

@@ -1,8 +1,9 @@
 //! Links of two single points that can break, or whose strength varies: rows of [`stretch`](crate::constraints::stretch)
 //! with a factor each, and with their loads.
 
+use crate::constraints::projection::{LinkLaw, LinkProjection};
 use crate::constraints::strength_map::StrengthMap;
-use crate::constraints::stretch::{LinkGroup, LinkLaw, LinkProjection, LinkRow};
+use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::input::links::Link;
 use crate::math::{Lanes, Real, Row4};
 use crate::model::blocks::AllBlocks;
@@ -161,22 +162,17 @@ unsafe fn relax<'a, R: Real>(
     let per_step = R::Lanes::splat(pass.per_step);
     for (group, load) in groups {
         // SAFETY: the caller's promise.
-        let [a, b] = group.row.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
-        let push = projection.push(&group.row, &group.factor, [a, b]);
+        let ends = group.row.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
+        let correction = projection.correction(&group.row, &group.factor, ends);
         if let Some(load) = load {
-            let [x, y, z, _] = R::Lanes::transpose(push);
-            for (sum, own) in load.iter_mut().zip([x, y, z]) {
+            for (sum, own) in load.iter_mut().zip(correction.push) {
                 *sum = (R::Lanes::from_array(*sum) + own * per_step).to_array();
             }
         }
-        for lane in 0..4 {
-            let [end_a, end_b] = group.row.ends.map(|end| end[lane]);
-            let moved_a = a[lane] + a[lane].splat_last() * push[lane];
-            let moved_b = b[lane] - b[lane].splat_last() * push[lane];
-            // SAFETY: the caller's promise.
-            unsafe {
-                points.set(end_a, Row4(moved_a.to_array()));
-                points.set(end_b, Row4(moved_b.to_array()));
+        for (ends, moved) in group.row.ends.iter().zip(correction.moved()) {
+            for (&end, moved) in ends.iter().zip(moved) {
+                // SAFETY: the caller's promise.
+                unsafe { points.set(end, Row4(moved.to_array())) };
             }
         }
     }
