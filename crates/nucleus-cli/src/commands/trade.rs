@@ -188,7 +188,9 @@ impl Trade {
 
     /// The scene with the frames to compare, and its text; `None` if it has errors, which are reported.
     fn scene(&self) -> Result<Option<(Scene, String)>> {
-        let Some((mut scene, _, text)) = files::open_scene(&self.scene, self.frames)?.report()? else {
+        let file = files::open_scene(&self.scene, self.frames)?;
+        let file = if self.part.is_none() { file.with_first_frame() } else { file };
+        let Some((mut scene, _, text)) = file.report()? else {
             return Ok(None);
         };
         if self.frames.is_none() {

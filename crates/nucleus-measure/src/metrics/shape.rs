@@ -15,7 +15,7 @@ use super::root_mean_square;
 pub struct Outline {
     /// Distance of the surfaces, RMS, over the cloth's size.
     pub distance: f64,
-    /// Area that only one of the two covers over the area that either covers, along the worst axis.
+    /// Area that only one of the two covers over the area that either covers, along the three axes together.
     pub silhouette: f64,
 }
 
@@ -88,7 +88,9 @@ fn distance_to_segment(point: Vector3<f64>, a: Vector3<f64>, b: Vector3<f64>) ->
 }
 
 /// Difference of the outlines of two shapes as a share: the area that only one of them covers over the area that either
-/// covers, seen along the axis where it is largest. 0 is the same outline, 1 no overlap.
+/// covers, seen along the three axes together. 0 is the same outline, 1 no overlap.
+///
+/// A sheet that an axis shows edge on has hardly any area there, so its outline along that axis counts as little.
 pub fn silhouette_difference(a: &[Vector3<f64>], b: &[Vector3<f64>], triangles: &[[u32; 3]]) -> f64 {
     let all = || a.iter().chain(b);
     if all().any(|point| !point.iter().all(|x| x.is_finite())) {
@@ -105,9 +107,10 @@ pub fn silhouette_difference(a: &[Vector3<f64>], b: &[Vector3<f64>], triangles: 
         let (only, either) = a.iter().zip(&b).fold((0u32, 0u32), |(only, either), (a, b)| {
             (only + u32::from(a != b), either + u32::from(a | b))
         });
-        f64::from(only) / f64::from(either.max(1))
+        [only, either]
     };
-    (0..3).map(seen).fold(0.0, f64::max)
+    let [only, either] = (0..3).map(seen).fold([0, 0], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
+    f64::from(only) / f64::from(either.max(1))
 }
 
 /// The cells whose centres a shape covers, seen along an axis.
@@ -203,6 +206,16 @@ mod tests {
         let shifted = moved(&points, Vector3::x() * 0.1);
         let found = silhouette_difference(&points, &shifted, &triangles);
         assert!((found - 0.2 / 1.1).abs() < 0.01, "{found}");
+    }
+
+    #[test]
+    fn an_outline_seen_edge_on_counts_by_its_area() {
+        let (flat, triangles) = sheet(4);
+        // A wave of 1 cm doubles and more what the sides see of the sheet, and leaves what is seen from above.
+        let wave = |p: &Vector3<f64>| Vector3::new(p.x, 0.01 * (9.0 * p.x).sin() * (7.0 * p.z).cos(), p.z);
+        let waved: Vec<_> = flat.iter().map(wave).collect();
+        let found = silhouette_difference(&flat, &waved, &triangles);
+        assert!(found > 0.001 && found < 0.05, "{found}");
     }
 
     #[test]

@@ -136,9 +136,8 @@ fn unresolved(trade: &Trade, request: &Request) -> Option<String> {
 pub fn time_to(trade: &Trade, error: f64) -> String {
     let wanted = percent(error);
     let request = Request::every(error);
-    if request.is_unresolved(&trade.measure) {
-        let floor = percent(trade.measure.essential_floor());
-        return format!("to {wanted}: not resolved, the references differ by {floor}");
+    if let Some(floor) = request.deciding_floor(&trade.measure) {
+        return format!("to {wanted}: not resolved, the references differ by {}", percent(floor));
     }
     match (trade.cheapest(&request), trade.frontier().last()) {
         (Some(point), _) => format!("to {wanted}: {} ms per frame with {}", figure(point.ms), point.setting),

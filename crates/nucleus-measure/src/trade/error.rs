@@ -232,9 +232,19 @@ impl Request {
     }
 
     /// Whether the references cannot show the wanted error in position or stretch, or in a quantity that was bounded.
+    /// Where positions can be compared in no frame, the shape stands for them.
     pub fn is_unresolved(&self, measure: &ErrorMeasure) -> bool {
+        self.deciding_floor(measure).is_some()
+    }
+
+    /// The largest difference of the references in the quantities that make a request unresolved; `None` if none does.
+    pub fn deciding_floor(&self, measure: &ErrorMeasure) -> Option<f64> {
         let is_bounded = |quantity| self.bounds.iter().any(|(of, _)| *of == quantity);
-        self.unresolved(measure).any(|(quantity, _)| quantity.is_essential() || is_bounded(quantity))
+        let is_place = |quantity| measure.comparable == 0 && quantity == Quantity::Shape;
+        let decides =
+            |quantity: Quantity| quantity.is_essential() || is_bounded(quantity) || is_place(quantity);
+        let deciding = self.unresolved(measure).filter(|(quantity, _)| decides(*quantity));
+        deciding.map(|(_, floor)| floor).reduce(f64::max)
     }
 }
 
@@ -271,6 +281,17 @@ pub(super) mod tests {
         let bounded = Request { every: None, bounds: vec![(Quantity::WorstStretch, 0.01)] };
         assert!(bounded.is_unresolved(&measure), "a bound that was asked for does");
         assert!(Request::every(1e-3).is_unresolved(&measure));
+    }
+
+    #[test]
+    fn without_comparable_positions_an_unresolved_shape_decides() {
+        let floors = vec![(Quantity::Stretch, 1e-4), (Quantity::Shape, 0.02)];
+        let measure = |comparable| ErrorMeasure { comparable, floors: floors.clone() };
+        assert!(!Request::every(0.01).is_unresolved(&measure(9)));
+        assert!(Request::every(0.01).is_unresolved(&measure(0)));
+        assert!(!Request::every(0.05).is_unresolved(&measure(0)));
+        let strain = Request { every: None, bounds: vec![(Quantity::Stretch, 0.01)] };
+        assert!(!strain.is_unresolved(&measure(0)), "the shape was not asked for");
     }
 
     #[test]

@@ -101,12 +101,17 @@ pub fn finenesses(is_refined: bool) -> &'static [[f64; 2]] {
 /// Settings near the recommended one of a sweep that may be cheaper, or more exact in the same time.
 ///
 /// The first round varies the substeps, the later ones halve the distance to the neighbour in evaluations that misses the
-/// wish, on a logarithmic scale.
+/// wish, on a logarithmic scale. Where no setting meets the wish, finer or cheaper ones are tried.
 pub fn near(trade: &Trade, wish: &Wish, round: u32) -> Vec<Setting> {
     let own = match wish.choose(trade) {
         Choice::Found(found) => found.setting,
-        Choice::Nearest(nearest) if matches!(wish, Wish::Error(_)) => return finer(trade, nearest.setting),
-        _ => return Vec::new(),
+        Choice::Nearest(nearest) => {
+            return match wish {
+                Wish::Error(_) => finer(trade),
+                Wish::Time(_) => cheaper(nearest.setting),
+            };
+        }
+        Choice::Unresolved(_) | Choice::None => return Vec::new(),
     };
     if own.reading == Reading::Classic {
         return Vec::new();
@@ -115,7 +120,9 @@ pub fn near(trade: &Trade, wish: &Wish, round: u32) -> Vec<Setting> {
         return SUBSTEPS.map(|substeps| Setting { substeps, ..own }).to_vec();
     }
     let others = trade.points.iter().map(|point| point.setting);
-    let ladder = others.filter(|other| other.with_evaluations(own.evaluations) == own);
+    let ladder = others.filter(|other| {
+        Setting { substeps: own.substeps, ..*other }.with_evaluations(own.evaluations) == own
+    });
     let neighbour = match wish {
         Wish::Error(_) => ladder.map(|x| x.evaluations).filter(|x| *x < own.evaluations).reduce(f64::max),
         Wish::Time(_) => ladder.map(|x| x.evaluations).filter(|x| *x > own.evaluations).reduce(f64::min),
@@ -124,12 +131,28 @@ pub fn near(trade: &Trade, wish: &Wish, round: u32) -> Vec<Setting> {
     between.map(|evaluations| own.with_evaluations(evaluations)).into_iter().collect()
 }
 
-/// The setting with twice the evaluations, if the reference is finer by far.
-fn finer(trade: &Trade, nearest: Setting) -> Vec<Setting> {
-    let most = trade.reference.as_ref().map_or(0.0, |fine| 0.5 * fine.setting.evaluations);
-    let doubled = nearest.with_evaluations(2.0 * nearest.evaluations);
-    let is_finer = nearest.reading == Reading::Physical && doubled.evaluations <= most;
-    if is_finer { vec![doubled] } else { Vec::new() }
+/// Settings finer than all of a curve: more substeps, because air and colliders enter once in each, and twice the
+/// evaluations. Only those for which the reference is finer by far, and without tethers, whose bias does not converge.
+fn finer(trade: &Trade) -> Vec<Setting> {
+    let Some(reference) = trade.reference.as_ref().map(|fine| fine.setting) else { return Vec::new() };
+    let others = trade.points.iter().map(|point| point.setting);
+    let own = others.filter(|other| other.reading == Reading::Physical && !other.tethers);
+    let fineness = |x: &Setting| [x.evaluations, f64::from(x.substeps)];
+    let finest = own.reduce(|a, b| if fineness(&b) > fineness(&a) { b } else { a });
+    let Some(finest) = finest else { return Vec::new() };
+    let substeps = finest.substeps.max(SUBSTEPS[SUBSTEPS.len() - 1]).min(reference.substeps);
+    let all = [1.0, 2.0].map(|factor| finest.with_evaluations(factor * finest.evaluations));
+    let all = all.into_iter().flat_map(|setting| [setting, Setting { substeps, ..setting }]);
+    all.filter(|setting| 2.0 * setting.evaluations <= reference.evaluations && *setting != finest).collect()
+}
+
+/// Settings cheaper than the cheapest of a curve.
+fn cheaper(cheapest: Setting) -> Vec<Setting> {
+    if cheapest.reading == Reading::Classic {
+        return Vec::new();
+    }
+    let halved = cheapest.with_evaluations((0.5 * cheapest.evaluations).round().max(1.0));
+    [halved, Setting { substeps: 1, ..cheapest }, Setting { substeps: 1, ..halved }].to_vec()
 }
 
 /// Estimated cost of a frame at a setting, in row evaluations of single precision.
@@ -241,6 +264,19 @@ mod tests {
         // 100 evaluations are the most that this time allows, and 400 exceed it.
         assert_eq!(settings(&Wish::Time(150.0), 1), [(3, 200.0)]);
         assert_eq!(settings(&Wish::Time(500.0), 1), []);
-        assert_eq!(settings(&Wish::Error(Request::every(0.0005)), 0), [], "no setting meets it");
+        assert_eq!(settings(&Wish::Error(Request::every(0.0005)), 0), [], "no reference is finer");
+    }
+
+    #[test]
+    fn where_no_setting_meets_an_error_finer_ones_are_tried_and_for_a_time_cheaper_ones() {
+        let all = vec![point(24.0, 0.1), point(96.0, 0.03), point(192.0, 0.04)];
+        let mut fine = point(768.0, 0.0);
+        fine.setting.substeps = 12;
+        let trade = Trade { reference: Some(fine), ..trade(all) };
+        let settings = |wish: &Wish| -> Vec<(u32, f64)> {
+            near(&trade, wish, 0).iter().map(|x| (x.substeps, x.evaluations)).collect()
+        };
+        assert_eq!(settings(&Wish::Error(Request::every(0.01))), [(8, 192.0), (3, 384.0), (8, 384.0)]);
+        assert_eq!(settings(&Wish::Time(10.0)), [(3, 12.0), (1, 24.0), (1, 12.0)]);
     }
 }

@@ -127,8 +127,9 @@ pub fn run_sweep(
             run_settings(benchmark, &near, references.as_ref(), cache, &mut done, &mut control, &mut runs)?;
             trade = Trade::new(benchmark, &runs, references.as_ref());
         }
-        if finer.peek().is_some() && references.is_some() && !matches!(wish.choose(&trade), Choice::Found(_))
-        {
+        // Finer references show no setting that is faster.
+        let is_missed = matches!(wish, Wish::Error(_)) && !matches!(wish.choose(&trade), Choice::Found(_));
+        if finer.peek().is_some() && references.is_some() && is_missed {
             continue;
         }
         trade.save(cache)?;
