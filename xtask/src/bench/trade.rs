@@ -59,7 +59,7 @@ fn settings(workload: Workload, size: u32) -> Vec<Setting> {
     let each = |&(resistance, bend): &(f64, f64)| {
         evaluations.iter().map(move |&evaluations| Setting { resistance, bend, evaluations, tethers: false })
     };
-    let tethered: &[u32] = if workload == Workload::Swing { &[24, 48, 96, 192, 384] } else { &[] };
+    let tethered: &[u32] = if workload == Workload::Swing { &[24, 48, 96, 192, 288, 384] } else { &[] };
     let tethered = tethered.iter().map(|&evaluations| Setting {
         resistance: 20.0,
         bend: 0.0,
