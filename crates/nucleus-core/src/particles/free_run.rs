@@ -113,7 +113,9 @@ impl<R: Real> Run<'_, R> {
     fn touch(&self, near: &mut NearPoints<R>) {
         for sweep in 0..self.pass.sweeps {
             self.push_by_ground(sweep == 0, near);
-            if sweep == 0 {
+            // A ground that holds points moves those that are not near as well.
+            if sweep == 0 || self.ground_holds() {
+                near.begin_search();
                 self.find_near_points(near);
             }
             if near.is_empty() {

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 use crate::bytes::{Encode, Reader};
 use crate::contact::collider::motion_bounds::{MotionBounds, squared_diagonal};
-use crate::contact::collider::separation::{best_plane, plane_along, separated};
+use crate::contact::collider::separation::{best_plane, separated};
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase;
@@ -369,32 +369,19 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     }
 }
 
-/// Distance from the plane of a face, in interaction ranges, beyond which a free point begins with that plane.
-const FAR: f64 = 2.0;
 /// Displacement of a contact whose plane is valid nowhere: it serves certificates, and a push needs another.
 const NOWHERE: f64 = 1e18;
 
 impl<R: Real> ColliderContact<R, 1, 3> {
-    /// The same for a free point, and whether it passes the face. A point that starts far from the face begins with a plane
-    /// that certifies its motion, if there is one: the plane of the face or, if it flies past the face, one along its way.
-    /// The closest points are found where it comes near.
+    /// The contact of a free point and a face, with a plane of this normal; `weights` are those of the closest point of the
+    /// face at the start of the step, if the plane is across the shortest line.
     pub fn of_free_point(
         point: u32,
         corners: [u32; 3],
+        normal: Point,
+        weights: Option<[f64; 3]>,
         step: &ColliderStep<'_, R>,
-        bounds: &MotionBounds<'_, R>,
-    ) -> Option<(Self, bool)> {
-        let (way, faces) =
-            ([step.start_position(point), step.end_position(point)], step.collider_positions(corners));
-        let across = (faces[0][1] - faces[0][0]).cross(&(faces[0][2] - faces[0][0]));
-        let height = across.dot(&(way[0] - faces[0][0]));
-        let length = across.norm();
-        if height.abs() <= FAR * step.interaction_range().to_f64() * length || length <= f64::MIN_POSITIVE {
-            return Self::candidate([point], corners, 0, step, bounds).map(|contact| (contact, false));
-        }
-        let ahead = across * (height.signum() / length);
-        let is_behind = faces[1].iter().any(|corner| ahead.dot(&(way[1] - corner)) < 0.0);
-        let aside = is_behind.then(|| plane_along(way, faces, 0.0)).flatten();
+    ) -> Self {
         let zero = [R::ZERO; 3];
         let mut contact = Self {
             points: [point],
@@ -407,10 +394,11 @@ impl<R: Real> ColliderContact<R, 1, 3> {
             plane_origin: zero,
             idle_until: [R::ZERO; 1],
         };
-        contact.set_plane(aside.unwrap_or(ahead), ([1.0], [1.0 / 3.0; 3]), step);
-        contact.plane_origin = [R::from_f64(NOWHERE); 3];
-        let gap = contact.min_gap_in_interval(step, bounds);
-        (gap < step.interaction_range()).then_some((contact, is_behind && aside.is_none()))
+        contact.set_plane(normal, ([1.0], weights.unwrap_or([1.0 / 3.0; 3])), step);
+        if weights.is_none() {
+            contact.plane_origin = [R::from_f64(NOWHERE); 3];
+        }
+        contact
     }
 }
 

@@ -17,6 +17,7 @@
 //! | certificates for the motion of a time step | [`separation`] |
 //! | its push, friction, adhesion and restitution | [`response`] |
 //! | free points: which faces a run of them may touch | [`near_collider`], [`near_search`] |
+//! | how the motion of one stands to a face | [`near_face`] |
 //! | their contacts in one time step | [`near_points`] |
 //! | sweeps over these, certificates and fallbacks | [`near_response`] |
 //! | fallbacks for points of a liquid or of links | [`free_points`] |
@@ -31,6 +32,7 @@ pub mod frame_start;
 pub mod free_points;
 pub mod motion_bounds;
 pub mod near_collider;
+mod near_face;
 pub mod near_points;
 mod near_response;
 pub mod near_search;

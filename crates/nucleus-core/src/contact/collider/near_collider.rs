@@ -113,6 +113,33 @@ impl<'a, R: Real> NearCollider<'a, R> {
         });
     }
 
+    /// Whether a way comes within `reach` of the box of a face, in the frame of the fitted boxes (separating axes across the
+    /// way: Ericson 2005, §5.3.3). Without fitted boxes every face is one.
+    #[inline]
+    pub fn comes_near(&self, way: &[Vector3<f64>; 2], face: u32, reach: f64) -> bool {
+        if !self.is_fitted {
+            return true;
+        }
+        let [low, high] = self.state.boxes.triangles[face as usize].corners();
+        let (mut apart, mut half, mut along) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let [low, high] = [low, high].map(|corner| f64::from(corner[axis]));
+            apart[axis] = way[0][axis] + way[1][axis] - low - high;
+            half[axis] = high - low + 2.0 * reach;
+            along[axis] = way[1][axis] - way[0][axis];
+        }
+        [(0, 1), (1, 2), (2, 0)].into_iter().all(|(a, b)| {
+            let across = apart[a] * along[b] - apart[b] * along[a];
+            across.abs() <= half[a] * along[b].abs() + half[b] * along[a].abs()
+        })
+    }
+
+    /// A way in this step in the frame of the fitted boxes.
+    pub fn way_among_boxes(&self, ends: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
+        let [from, to] = self.args.time.map(|time| self.state.origin(time));
+        [ends[0] - from, ends[1] - to]
+    }
+
     /// A box in world space relative to an anchor, inflated by a range, in the frame of the fitted boxes in the time step.
     pub fn box_around(&self, anchor: [f64; 3], bound: &MotionBox<R>, range: f32) -> Aabb {
         let [low, high] = place_box(anchor, bound).map(Vector3::from);

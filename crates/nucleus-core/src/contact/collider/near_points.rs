@@ -5,12 +5,15 @@
 
 use std::ops::Range;
 
+use nalgebra::Vector3;
+
 use crate::contact::collider::contact::ColliderContact;
-use crate::contact::collider::motion_bounds::{MotionBounds, MotionBox, box_contains};
-use crate::contact::collider::near_collider::{NearCollider, place_box};
+use crate::contact::collider::motion_bounds::{MotionBox, box_contains};
+use crate::contact::collider::near_collider::{MARGIN, NearCollider, place_box};
+use crate::contact::collider::near_face::{Facing, Way, facing};
 use crate::contact::collider::near_search::{Search, search_bound};
 use crate::contact::time_step::{ColliderStep, ContactCounters};
-use crate::math::Real;
+use crate::math::{Lanes, Real, Row4};
 
 /// A point near a collider.
 #[derive(Debug, Clone, Copy)]
@@ -18,21 +21,27 @@ pub struct NearPoint<R> {
     pub(super) point: u32,
     /// The collider, by its place in the pass.
     collider: usize,
-    /// Displacements for which its contacts are complete, in metres.
+    /// Displacements at the end of the step for which its contacts are complete, in metres.
     bound: MotionBox<R>,
     /// Its contacts.
     pub(super) contacts: [u32; 2],
-    /// Whether it passes the face of the first of them.
+    /// Whether it passes the face of the first of them; all others may be missing then.
     pub(super) passes: bool,
+    /// Whether it starts behind the face whose plane is nearest.
+    is_behind: bool,
     /// The exit face of a point inside.
     pub(super) exit: Option<u32>,
 }
 
 impl<R: Real> NearPoint<R> {
-    fn new(point: u32, collider: usize, bound: MotionBox<R>) -> Self {
-        Self { point, collider, bound, contacts: [0; 2], passes: false, exit: None }
+    fn new(point: u32, collider: usize) -> Self {
+        let bound = NO_BOUND.map(|corner| Row4([R::from_f64(corner); 4]));
+        Self { point, collider, bound, contacts: [0; 2], passes: false, is_behind: false, exit: None }
     }
 }
+
+/// The corners of a bound that contains nothing.
+const NO_BOUND: [f64; 2] = [1.0, -1.0];
 
 /// The points of a task that are near colliders, and what it counts.
 #[derive(Debug)]
@@ -49,6 +58,8 @@ pub struct NearPoints<R> {
     pub approached: Vec<usize>,
     /// Collider, point and exit face of all points inside.
     pub inside: Vec<(usize, u32, u32)>,
+    /// The number of these in the runs before this one.
+    inside_before: usize,
     /// Points that contact has displaced without velocity, and their motion in the time step in m/s.
     pub displaced: Vec<(u32, [R; 3])>,
     /// The smallest gap of a contact over its thickness.
@@ -68,6 +79,7 @@ impl<R> Default for NearPoints<R> {
             displaced: Vec::new(),
             approached: Vec::new(),
             inside: Vec::new(),
+            inside_before: 0,
             min_gap: f64::INFINITY,
             counters: ContactCounters::default(),
         }
@@ -86,9 +98,16 @@ impl<R: Real> NearPoints<R> {
 
     /// Begins a run of points.
     pub fn begin_run(&mut self) {
+        self.unproven.clear();
+        self.inside_before = self.inside.len();
+        self.begin_search();
+    }
+
+    /// Begins a search of the run: no point is near.
+    pub fn begin_search(&mut self) {
         self.near.clear();
         self.contacts.clear();
-        self.unproven.clear();
+        self.inside.truncate(self.inside_before);
     }
 
     /// Whether no point of the run is near a collider.
@@ -116,8 +135,7 @@ impl<R: Real> NearPoints<R> {
     ) {
         self.search.begin(collider, step, rows);
         for place in 0..self.search.len() {
-            let (point, bound) = self.search.point(place);
-            let mut near = NearPoint::new(point, at, bound);
+            let mut near = NearPoint::new(self.search.point(place), at);
             match collider.is_fitted() {
                 true => self.add_contacts(&mut near, place, collider, step),
                 false => self.search(&mut near, collider, step),
@@ -132,7 +150,8 @@ impl<R: Real> NearPoints<R> {
         }
     }
 
-    /// Adds the contacts of the point at a place of the search.
+    /// Adds the contacts of the point at a place of the search. Where it passes a face, only the first on its way: pushed off
+    /// that, it comes near few of the others.
     fn add_contacts(
         &mut self,
         near: &mut NearPoint<R>,
@@ -140,9 +159,13 @@ impl<R: Real> NearPoints<R> {
         collider: &NearCollider<'_, R>,
         step: &ColliderStep<'_, R>,
     ) {
-        near.contacts = [self.contacts.len() as u32; 2];
-        for &face in self.search.faces(place) {
-            add_contact(&mut self.contacts, near, face, collider, step);
+        let mut listing = Listing::new(&mut self.contacts, near, collider, step);
+        self.search.faces(place).iter().for_each(|&face| listing.add(face, collider, step));
+        if listing.passed_at < f64::INFINITY {
+            let first = near.contacts[0] as usize;
+            self.contacts.truncate(first + 1);
+        } else {
+            near.bound = end_bound(near.point, step);
         }
         self.end_search(near);
     }
@@ -162,7 +185,7 @@ impl<R: Real> NearPoints<R> {
         for k in 0..self.waiting.len() {
             let point = self.waiting[k];
             if self.near[..found].binary_search_by_key(&(at, point), key).is_err() {
-                let mut near = NearPoint::new(point, at, search_bound(point, step));
+                let mut near = NearPoint::new(point, at);
                 self.search(&mut near, collider, step);
                 self.near.push(near);
             }
@@ -177,19 +200,17 @@ impl<R: Real> NearPoints<R> {
         collider: &NearCollider<'_, R>,
         step: &ColliderStep<'_, R>,
     ) {
-        near.bound = search_bound(near.point, step);
-        near.contacts = [self.contacts.len() as u32; 2];
-        near.passes = false;
-        let (anchor, bound) = (step.anchors[near.point as usize], near.bound);
-        if !collider.reaches(place_box(anchor, &bound)) {
+        near.bound = end_bound(near.point, step);
+        let (anchor, motion) = (step.anchors[near.point as usize], search_bound(near.point, step));
+        let mut listing = Listing::new(&mut self.contacts, near, collider, step);
+        if !collider.reaches(place_box(anchor, &motion)) {
             return;
         }
         if !collider.is_fitted() && self.approached.last() != Some(&collider.args.at) {
             self.approached.push(collider.args.at);
         }
         let range = step.interaction_range().to_f64() as f32;
-        let contacts = &mut self.contacts;
-        collider.for_faces(anchor, &bound, range, |face| add_contact(contacts, near, face, collider, step));
+        collider.for_faces(anchor, &motion, range, |face| listing.add(face, collider, step));
         self.end_search(near);
     }
 
@@ -206,14 +227,7 @@ impl<R: Real> NearPoints<R> {
         collider: &NearCollider<'_, R>,
         step: &ColliderStep<'_, R>,
     ) -> Option<u32> {
-        let [first, end] = near.contacts.map(|at| at as usize);
-        let is_suspect = || {
-            let nearest = self.contacts[first..end]
-                .iter()
-                .min_by(|a, b| a.gap_at_start(step).to_f64().total_cmp(&b.gap_at_start(step).to_f64()));
-            nearest.is_some_and(|contact| is_behind(near.point, contact.collider_points, step))
-        };
-        let is_tested = collider.was_inside(near.point) || is_suspect();
+        let is_tested = collider.was_inside(near.point) || near.is_behind;
         (is_tested && step.has_full_strength(near.point))
             .then(|| collider.exit_face(step.start_position(near.point), step.time[0]))?
     }
@@ -242,33 +256,69 @@ impl<R: Real> NearPoints<R> {
     }
 }
 
-/// Adds the contact of a point with a face, if its motion comes near; first in its list if it passes the face, because it
-/// comes near few others once it is pushed off.
-fn add_contact<R: Real>(
-    contacts: &mut Vec<ColliderContact<R, 1, 3>>,
-    near: &mut NearPoint<R>,
-    face: u32,
-    collider: &NearCollider<'_, R>,
-    step: &ColliderStep<'_, R>,
-) {
-    let bounds = MotionBounds {
-        boxes: std::slice::from_ref(&near.bound),
-        first: near.point,
-        frame_travel: [R::ZERO; 3],
-    };
-    let found = ColliderContact::of_free_point(near.point, collider.corners(face), step, &bounds);
-    let Some((contact, passes)) = found else { return };
-    contacts.push(contact);
-    near.passes |= passes;
-    if passes {
-        let last = contacts.len() - 1;
-        contacts.swap(near.contacts[0] as usize, last);
+/// The contacts of one point, while they are listed.
+struct Listing<'a, R> {
+    contacts: &'a mut Vec<ColliderContact<R, 1, 3>>,
+    near: &'a mut NearPoint<R>,
+    way: Way,
+    /// The same in the frame of the collider's boxes.
+    among_boxes: [Vector3<f64>; 2],
+    /// Share of the way at which it passes the face of the first contact; infinite if it passes none.
+    passed_at: f64,
+    /// Height at the start above the face whose plane is nearest, in metres.
+    height: f64,
+}
+
+impl<'a, R: Real> Listing<'a, R> {
+    /// No contacts, for the motion of a point in this step.
+    fn new(
+        contacts: &'a mut Vec<ColliderContact<R, 1, 3>>,
+        near: &'a mut NearPoint<R>,
+        collider: &NearCollider<'_, R>,
+        step: &ColliderStep<'_, R>,
+    ) -> Self {
+        near.contacts = [contacts.len() as u32; 2];
+        (near.passes, near.is_behind) = (false, false);
+        let ends = [step.start_position(near.point), step.end_position(near.point)];
+        let range = step.interaction_range().to_f64();
+        let way = Way::new(ends, range, MARGIN * DIAGONAL * range);
+        let way = if step.material.has_adhesion() { way.with_adhesion() } else { way };
+        let among_boxes = collider.way_among_boxes(ends);
+        Self { contacts, near, way, among_boxes, passed_at: f64::INFINITY, height: f64::INFINITY }
+    }
+
+    /// Adds the contact with a face, unless a plane excludes it. The first face that the point passes comes first.
+    fn add(&mut self, face: u32, collider: &NearCollider<'_, R>, step: &ColliderStep<'_, R>) {
+        if !collider.comes_near(&self.among_boxes, face, self.way.range + self.way.margin) {
+            return;
+        }
+        let (point, corners) = (self.near.point, collider.corners(face));
+        let (facing, height) = facing(&self.way, step.collider_positions(corners));
+        if height.abs() < self.height.abs() {
+            (self.height, self.near.is_behind) = (height, height < 0.0);
+        }
+        let (normal, weights) = match facing {
+            Facing::Apart => return,
+            Facing::Close(normal, weights) => (normal, Some(weights)),
+            Facing::Near(normal) | Facing::Passes(normal, _) => (normal, None),
+        };
+        self.contacts.push(ColliderContact::of_free_point(point, corners, normal, weights, step));
+        if let Facing::Passes(_, share) = facing
+            && share < self.passed_at
+        {
+            (self.passed_at, self.near.passes) = (share, true);
+            let last = self.contacts.len() - 1;
+            self.contacts.swap(self.near.contacts[0] as usize, last);
+        }
     }
 }
 
-/// Whether a point is behind the plane of a face at the start of the step.
-fn is_behind<R: Real>(point: u32, corners: [u32; 3], step: &ColliderStep<'_, R>) -> bool {
-    let [from, _] = step.collider_positions(corners);
-    let outward = (from[1] - from[0]).cross(&(from[2] - from[0]));
-    outward.dot(&(step.start_position(point) - from[0])) < 0.0
+/// The diagonal of a cube over its side, and a little more for rounding.
+const DIAGONAL: f64 = 1.75;
+
+/// The box around the end of a point's motion for which a search is complete, in metres from its anchor.
+fn end_bound<R: Real>(point: u32, step: &ColliderStep<'_, R>) -> MotionBox<R> {
+    let margin = R::Lanes::splat(step.interaction_range() * R::from_f64(MARGIN));
+    let end = step.row(point).lanes();
+    [end - margin, end + margin].map(|corner| Row4(corner.to_array()))
 }

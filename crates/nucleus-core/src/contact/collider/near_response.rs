@@ -24,14 +24,12 @@ impl<R: Real> NearPoints<R> {
                 collider.push_outward(point, face, step);
                 continue;
             }
-            self.update(place, collider, step);
-            let NearPoint { contacts: [first, _], passes, .. } = self.near[place];
-            if passes {
-                // Pushed off the face that it would pass, it comes near few of the others.
+            if self.near[place].passes {
+                let [first, _] = self.near[place].contacts;
                 self.contacts[first as usize].resolve(step).count(&self.counters);
                 self.near[place].passes = false;
-                self.update(place, collider, step);
             }
+            self.update(place, collider, step);
             let [first, end] = self.near[place].contacts;
             resolve_contacts(DisjointSlice::new(&mut self.contacts), first..end, step, &self.counters);
         }

@@ -84,9 +84,9 @@ impl<R: Real> Search<R> {
         self.points.len()
     }
 
-    /// The point at a place, and the bound of its motion.
-    pub fn point(&self, place: usize) -> (u32, MotionBox<R>) {
-        self.points[place]
+    /// The point at a place.
+    pub fn point(&self, place: usize) -> u32 {
+        self.points[place].0
     }
 
     /// The faces that the point at a place may touch, if boxes are fitted.

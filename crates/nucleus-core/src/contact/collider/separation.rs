@@ -108,16 +108,20 @@ fn gaps_along<const N: usize, const M: usize>(n: Point, x: &[Point; N], q: &[Poi
 pub fn plane_along([start, end]: [Point; 2], [from, to]: [[Point; 3]; 2], least: f64) -> Option<Point> {
     let middle = |corners: [Point; 3]| (corners[0] + corners[1] + corners[2]) / 3.0;
     let way = (end - start) - (middle(to) - middle(from));
-    let gap = |normal: Point, place: Point, [a, b, c]: [Point; 3]| {
-        normal.dot(&place) - normal.dot(&a).max(normal.dot(&b)).max(normal.dot(&c))
-    };
     let mut best = (least, None);
     for k in 0..3 {
         let edge = from[(k + 1) % 3] - from[k];
-        let Some(normal) = way.cross(&edge).try_normalize(f64::MIN_POSITIVE) else { continue };
+        let across = way.cross(&edge);
         // The third corner is on the other side of the plane through the edge.
-        let normal = if normal.dot(&(from[(k + 2) % 3] - from[k])) > 0.0 { -normal } else { normal };
-        let gap = gap(normal, start, from).min(gap(normal, end, to));
+        let across = if across.dot(&(from[(k + 2) % 3] - from[k])) > 0.0 { -across } else { across };
+        let at_start = across.dot(&(start - from[k]));
+        if at_start <= 0.0 {
+            continue;
+        }
+        let length = across.norm();
+        let normal = across / length;
+        let at_end = to.iter().map(|corner| normal.dot(&(end - corner))).fold(f64::INFINITY, f64::min);
+        let gap = at_end.min(at_start / length);
         if gap > best.0 {
             best = (gap, Some(normal));
         }
