@@ -75,6 +75,12 @@ impl PlacedSurface {
         Some(Nearest { distance, point, normal, corners: self.corners[at as usize], weights })
     }
 
+    /// Calls `found` with each triangle that may overlap a box: its place, and its corners in metres.
+    pub fn for_faces(&self, [low, high]: [Point; 2], mut found: impl FnMut(usize, [Point; 3])) {
+        let around = Aabb::new(low - self.origin, high - self.origin);
+        self.bvh.query(&around, |at| found(at as usize, self.triangles[at as usize]));
+    }
+
     /// How far a ray gets, as a share of its length, before it meets a triangle; triangles with the corner `own` do not
     /// count.
     pub fn first_hit(&self, from: Point, ray: Point, own: Option<u32>) -> Option<f64> {

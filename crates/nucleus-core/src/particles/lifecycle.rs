@@ -13,7 +13,7 @@ use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::events::{Spawn, collision_events};
-use crate::particles::first_way::{fit_obstacles, stopped_at};
+use crate::particles::first_way::Obstacles;
 use crate::particles::population::{Population, close_up};
 use crate::particles::pruning::Crowd;
 use crate::particles::ramps::apply_ramps;
@@ -131,24 +131,29 @@ fn add_births<R: Real>(
 ) {
     let Solver { model, state, contact, pool, .. } = solver;
     let mut births = state.populations[index].due(&frame.births, end).peekable();
-    let colliders = &model.colliders;
+    if births.peek().is_none() {
+        return;
+    }
     let (cloth, mass) = (state.populations[index].cloth(), state.populations[index].birth_mass());
-    let object = &mut model.cloths[cloth];
+    let object = &model.cloths[cloth];
     let (first, row_of) = (object.points().end, object.blocks.rows().start);
     let flight = Flight::new(frame, &frame.cloths[cloth], [mass, object.point_mass], h);
     let living = object.points();
     let mut crowd = crowd_of(&frame.cloths[cloth])
         .map(|distance| Crowd::new(distance, living.map(|row| state.position(row).into())));
-    if births.peek().is_some() {
-        fit_obstacles(contact, colliders, cloth, end);
-    }
-    for birth in births {
+    let flights = births.map(|birth| {
         let age = (end - birth.time) * frame.duration;
-        let (mut position, mut velocity) = flight.after(birth, age);
+        (birth, age, flight.after(birth, age))
+    });
+    let flights: Vec<_> = flights.collect();
+    let ways = flights.iter().map(|(birth, _, (position, _))| [birth.position, *position]);
+    let ways = ways.filter(|way| way.iter().all(is_in_range));
+    let obstacles = Obstacles::new((&*model, &*state, contact), cloth, ways, [end, frame.duration]);
+    for (birth, age, (mut position, mut velocity)) in flights {
         let population = &mut state.populations[index];
         let row = row_of + population.len() as u32;
         let way = [birth.position, position];
-        let stop = || stopped_at(contact, colliders, (cloth, row), way, [birth.time, end]);
+        let stop = || obstacles.stop((&*model, &*contact), row, way, birth.time);
         if let Some(place) = (!population.is_full()).then(stop).flatten() {
             (position, velocity) = (place, birth.velocity);
         }
@@ -174,7 +179,7 @@ fn add_births<R: Real>(
     let living = state.populations[index].len();
     let last = row_of + living as u32;
     if last > first {
-        object.resize(living);
+        model.cloths[cloth].resize(living);
         begin_contact_of(state, contact, cloth, first..last);
         if !frame.fields_per_substep {
             let interval = frame.duration * (1.0 - end).max(f64::EPSILON);

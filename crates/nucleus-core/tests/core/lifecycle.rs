@@ -3,7 +3,7 @@
 use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 use nucleus_core::{
     Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements,
-    FrameInput, Mass, ModelBuilder, ParticleAge, Particles, ResistanceModel, SelfCollision, Solver,
+    FrameInput, Mass, ModelBuilder, ParticleAge, Particles, Pin, ResistanceModel, SelfCollision, Solver,
     StateView, Surface,
 };
 
@@ -220,7 +220,7 @@ impl Pour {
             plane: Some(ground(0.2)),
             cloths: vec![balls(0.012), ClothFrame { thickness: 0.003, self_collision: own, ..still() }],
             colliders: vec![ColliderFrame { collide: true, thickness: 0.002, ..ColliderFrame::default() }],
-            pins: corners.map(|pin| nucleus_core::Pin { cloth: ClothId(1), ..pin }).collect(),
+            pins: corners.map(|pin| Pin { cloth: ClothId(1), ..pin }).collect(),
             ..frame(2, physical(48.0))
         }
     }
@@ -328,42 +328,54 @@ fn particles_born_inside_the_reach_of_a_moving_collider_stay_outside_of_it() {
 }
 
 /// The heights of particles that are emitted at 100 m/s at a wall 0.2 m below, which is one square and moves at 2.4 m/s along
-/// the way, less the height of the wall; and those of the ground plane in its place.
+/// the way, less the height of the wall; and those of the ground plane, or of pinned cloth, in its place.
 fn heights_above(obstacle: &str, wall_speed: f64) -> Vec<f64> {
     let mut wall = grid(2, 2, Vec3::x() * 2000.0, -Vec3::z() * 2000.0);
     wall.positions.iter_mut().for_each(|p| *p += Vec3::new(-1000.0, 0.0, 1000.0));
+    let mut sheet = grid(5, 5, Vec3::x() * 4.0, Vec3::z() * 4.0);
+    sheet.positions.iter_mut().for_each(|p| *p -= Vec3::new(2.1, 0.0, 2.1));
     let mut builder = ModelBuilder::new();
     builder.cloth(room(100, &[], &[], 1.0)).expect("valid particles");
+    let lists = ClothLists { self_collision: true, ..LINKS };
+    builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(0.3), lists)).expect("a good mesh");
     builder.collider(Collider { surface: wall.clone() }).expect("a good mesh");
     let mut solver = Solver::<f32>::new(builder, 1);
-    let at = |frames: f64| {
-        let by = Vec3::y() * (wall_speed * frames * COUNT_PERIOD);
-        wall.positions.iter().map(|p| p + by).collect::<Vec<_>>()
-    };
+    let height = |frames: f64| Vec3::y() * (wall_speed * frames * COUNT_PERIOD);
+    let at = |frames: f64| wall.positions.iter().map(|p| p + height(frames)).collect::<Vec<_>>();
+    let collides = |here: &str| ClothFrame { collide: obstacle == here, ..still() };
     for number in 0..4 {
         let mut births = even_births(number, 9.7, Vec3::new(3.0, -100.0, 0.0));
         births.iter_mut().for_each(|birth| birth.position.y = 0.2 + wall_speed.abs() * 4.0 * COUNT_PERIOD);
         let now = f64::from(number);
         let collide = obstacle == "wall";
         let wall = ColliderFrame { start: at(now), end: at(now + 1.0), collide, ..Default::default() };
+        let pins = pins(&sheet, 0..25).into_iter().map(|pin| Pin {
+            cloth: ClothId(1),
+            start: pin.start + height(now),
+            end: pin.start + height(now + 1.0),
+            ..pin
+        });
+        let own = SelfCollision { on: true, thickness: 0.002, elements: Elements::Faces, edges: false };
+        let beads = ClothFrame { self_collision: SelfCollision::OFF, ..balls(0.002) };
         let input = FrameInput {
             births,
             plane: (obstacle == "ground").then(|| ground(0.1)),
-            cloths: vec![ClothFrame { self_collision: SelfCollision::OFF, ..balls(0.002) }],
+            cloths: vec![beads, ClothFrame { thickness: 0.002, self_collision: own, ..collides("cloth") }],
             colliders: vec![wall],
+            pins: pins.collect(),
             ..frame(1, physical(24.0))
         };
         let report = solver.step(&input, &mut ());
         assert_eq!((report.births_refused, report.pairs_unresolved), (0, 0));
     }
-    let height = at(4.0)[0].y;
-    places(&solver).iter().map(|place| place.y - height).collect()
+    places(&solver).iter().map(|place| place.y - height(4.0).y).collect()
 }
 
-// EVIDENCE: N2.3-4  nothing passes through a collider, from its first moment on
+// EVIDENCE: N2.3-4  nothing passes through a collider or cloth, from its first moment on
 #[test]
 fn a_particle_that_is_born_at_high_speed_beside_a_surface_does_not_pass_it() {
-    for (obstacle, speed) in [("wall", 0.0), ("wall", 2.4), ("wall", -2.4), ("ground", 0.0)] {
+    let moving = ["wall", "cloth"].into_iter().flat_map(|it| [0.0, 2.4, -2.4].map(|speed| (it, speed)));
+    for (obstacle, speed) in moving.chain([("ground", 0.0)]) {
         let heights = heights_above(obstacle, speed);
         assert_eq!(heights.len(), 38);
         assert!(heights.iter().all(|&height| height > 0.0), "{obstacle} at {speed} m/s: {heights:?}");

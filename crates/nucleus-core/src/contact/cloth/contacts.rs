@@ -97,11 +97,14 @@ impl<R: Real> ClothContacts<R> {
 
     /// Whether a cloth can collide with itself or with another in this frame.
     pub fn touches(&self, cloth: usize) -> bool {
+        (0..self.materials.len().isqrt()).any(|other| self.touch(cloth, other))
+    }
+
+    /// Whether two cloths can collide in this frame.
+    pub fn touch(&self, cloth: usize, other: usize) -> bool {
         let cloths = self.materials.len().isqrt();
-        (0..cloths).any(|other| {
-            self.materials[cloth * cloths + other].is_some()
-                || self.materials[other * cloths + cloth].is_some()
-        })
+        let of = |ours: usize, theirs: usize| self.materials[ours * cloths + theirs].is_some();
+        of(cloth, other) || of(other, cloth)
     }
 
     /// Whether any two cloths can collide in this frame.
