@@ -84,7 +84,8 @@ impl Summary<'_> {
             let count = figures::count(statistics.births_refused.total as usize, "particle");
             writeln!(
                 text,
-                "{count} not emitted: the object was full (`maxCount`, or the room found for the scene)"
+                "{count} not emitted: the object was full (`maxCount`, or the room found for the scene), or 64 others \
+                 touched the place"
             )?;
         }
         if let Some((input, frame)) = statistics.first_sanitized {

@@ -139,8 +139,7 @@ fn add_births<R: Real>(
     let (first, row_of) = (object.points().end, object.blocks.rows().start);
     let flight = Flight::new(frame, &frame.cloths[cloth], [mass, object.point_mass], h);
     let living = object.points();
-    let mut crowd = crowd_of(&frame.cloths[cloth])
-        .map(|distance| Crowd::new(distance, living.map(|row| state.position(row).into())));
+    let mut crowd = Crowd::of(&frame.cloths[cloth], living.map(|row| state.position(row).into()));
     let flights = births.map(|birth| {
         let age = (end - birth.time) * frame.duration;
         (birth, age, flight.after(birth, age))
@@ -157,11 +156,13 @@ fn add_births<R: Real>(
         if let Some(place) = (!population.is_full()).then(stop).flatten() {
             (position, velocity) = (place, birth.velocity);
         }
-        if population.is_full() || !(is_in_range(&position) && is_in_range(&velocity)) || age.is_nan() {
+        let is_crowded = crowd.as_ref().is_some_and(|crowd| crowd.refuses(position));
+        let is_valid = is_in_range(&position) && is_in_range(&velocity) && !age.is_nan();
+        if population.is_full() || !is_valid || is_crowded {
             counters.births_refused += 1;
             continue;
         }
-        if crowd.as_ref().is_some_and(|crowd| crowd.overlaps(position)) {
+        if crowd.as_ref().is_some_and(|crowd| crowd.prunes(position)) {
             continue;
         }
         counters.births += 1;
@@ -186,12 +187,6 @@ fn add_births<R: Real>(
             update_fields_of((cloth, first..last), state, frame, interval, pool);
         }
     }
-}
-
-/// The distance in metres that new particles keep from others; `None` where they may overlap.
-fn crowd_of(cloth: &ClothFrame) -> Option<f64> {
-    let distance = 2.0 * cloth.self_collision.thickness * cloth.overlap_pruning;
-    (distance > 0.0 && distance.is_finite()).then_some(distance)
 }
 
 /// Puts a particle into a row.

@@ -1,22 +1,44 @@
-//! New particles that would overlap others of their object are left out (`emissionOverlapPruning`).
+//! New particles among others of their object: those that would overlap one are left out (`emissionOverlapPruning`), and
+//! those that would touch too many are refused.
+//!
+//! All particles in one place touch each other, so contact among them takes memory with the square of their number.
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-/// The places of all particles of an object, by cells whose edge is the least distance.
+use crate::input::frame::ClothFrame;
+
+/// Others of its object that a particle may touch at its birth, at most.
+pub const MAX_TOUCHING: usize = 64;
+
+/// The places of particles of an object, by cells whose edge is the larger distance.
 #[derive(Debug)]
 pub struct Crowd {
-    distance: f64,
+    /// Distance in metres that new particles keep from others; 0 where they may overlap.
+    pruned: f64,
+    /// Distance in metres at which particles touch; 0 where they do not collide.
+    touching: f64,
     cells: BTreeMap<[i64; 3], Vec<Vector3<f64>>>,
 }
 
 impl Crowd {
-    /// Of particles that keep a distance in metres from new ones.
-    pub fn new(distance: f64, places: impl Iterator<Item = Vector3<f64>>) -> Self {
-        let mut crowd = Self { distance, cells: BTreeMap::new() };
+    /// That of an object; `None` where new particles need not know of others.
+    pub fn of(cloth: &ClothFrame, places: impl Iterator<Item = Vector3<f64>>) -> Option<Self> {
+        let own = &cloth.self_collision;
+        let pruned = 2.0 * own.thickness * cloth.overlap_pruning;
+        let touching = if own.on { 2.0 * own.thickness } else { 0.0 };
+        let [pruned, touching] = [pruned, touching].map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 });
+        let mut crowd = Self { pruned, touching, cells: BTreeMap::new() };
+        if crowd.edge() <= 0.0 {
+            return None;
+        }
         places.for_each(|place| crowd.add(place));
-        crowd
+        Some(crowd)
+    }
+
+    fn edge(&self) -> f64 {
+        self.pruned.max(self.touching)
     }
 
     /// Adds a particle.
@@ -24,18 +46,27 @@ impl Crowd {
         self.cells.entry(self.cell(place)).or_default().push(place);
     }
 
-    /// Whether a particle at this place would be nearer than the distance to another.
-    pub fn overlaps(&self, place: Vector3<f64>) -> bool {
+    /// Whether a particle at this place is left out, because it would overlap another.
+    pub fn prunes(&self, place: Vector3<f64>) -> bool {
+        self.has_within(self.pruned, place, 1)
+    }
+
+    /// Whether a particle at this place is refused, because it would touch more than [`MAX_TOUCHING`] others.
+    pub fn refuses(&self, place: Vector3<f64>) -> bool {
+        self.has_within(self.touching, place, MAX_TOUCHING + 1)
+    }
+
+    /// Whether so many particles are nearer to a place than a distance, which is no larger than the edge of a cell.
+    fn has_within(&self, distance: f64, place: Vector3<f64>, count: usize) -> bool {
         let [x, y, z] = self.cell(place);
-        let is_near = |other: &Vector3<f64>| (other - place).norm_squared() < self.distance * self.distance;
-        (0..27).any(|k| {
-            let cell = [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1];
-            self.cells.get(&cell).is_some_and(|others| others.iter().any(is_near))
-        })
+        let is_near = |other: &&Vector3<f64>| (*other - place).norm_squared() < distance * distance;
+        let cells = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
+        let others = cells.filter_map(|cell| self.cells.get(&cell)).flatten();
+        others.filter(is_near).take(count).count() == count
     }
 
     /// Coordinates are bounded, so that their cells are whole numbers.
     fn cell(&self, place: Vector3<f64>) -> [i64; 3] {
-        (place / self.distance).map(|x| x.floor().clamp(-1e18, 1e18) as i64).into()
+        (place / self.edge()).map(|x| x.floor().clamp(-1e18, 1e18) as i64).into()
     }
 }

@@ -188,6 +188,18 @@ fn a_particle_that_dies_makes_room_for_the_next() {
     assert_eq!(ages(&solver).last().map(|age| age.id), Some(47));
 }
 
+#[test]
+fn a_birth_that_would_touch_more_than_sixty_four_others_is_refused_and_counted() {
+    for (radius, born) in [(0.01, 65), (0.0, 1000)] {
+        let mut solver = solver(room(1000, &[], &[], 1.0), 1);
+        let births = (0..1000).map(|_| birth(1.0, Vec3::zeros(), Vec3::zeros(), f64::INFINITY)).collect();
+        let mut cloth = balls(radius);
+        cloth.self_collision.on = radius > 0.0;
+        let report = solver.step(&FrameInput { births, cloths: vec![cloth], ..frame(1, CLASSIC) }, &mut ());
+        assert_eq!((report.births, report.births_refused), (born, 1000 - born), "radius {radius}");
+    }
+}
+
 /// Beads that are poured on a ball, a sheet and the ground, and die.
 struct Pour {
     builder: ModelBuilder,

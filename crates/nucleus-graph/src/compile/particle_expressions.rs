@@ -73,7 +73,7 @@ impl EvaluationInterval<'_> {
             let [velocity, place] = [0, 4].map(|at| self.in_metres(&values[at..at + 3]));
             birth.velocity = velocity.unwrap_or(birth.velocity);
             birth.position = place.unwrap_or(birth.position);
-            birth.lifespan = Some(values[3]).filter(|x| *x >= 0.0).unwrap_or(birth.lifespan);
+            birth.lifespan = Some(values[3]).filter(|x| !x.is_nan()).unwrap_or(birth.lifespan);
         }
     }
 

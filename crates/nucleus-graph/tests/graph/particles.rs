@@ -379,6 +379,8 @@ fn expressions_set_velocities_and_lifespans_at_birth_and_in_each_frame() {
         assert!((1.0..1.5).contains(&birth.velocity.y), "{birth:?}");
     }
     assert!(all[0].velocity.y != all[1].velocity.y);
+    // A negative lifespan is over at birth.
+    assert!(born("lifespan = 0 - 1").iter().all(|birth| birth.lifespan == -1.0));
     // A result that is not a finite number changes nothing.
     assert!(born("vy = 1 / 0; lifespan = 0 / 0").iter().all(|birth| birth.velocity.norm() == 0.0));
     let nodes = r#""n": nucleus(gravity: 0), "q": nParticle(position: [(0, 0, 0), (5, 0, 0)], drag: 0,
