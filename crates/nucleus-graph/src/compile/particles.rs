@@ -122,8 +122,10 @@ impl Compiler<'_> {
             return Some(None);
         }
         let mut room = self.room_for_particles(id, points, emitters).max(recorded as u64);
-        if is_target && self.start.get(id, &particle::MAX_COUNT) < 0 {
-            room = room.saturating_add(EVENT_ROOM);
+        if is_target {
+            // A limit below zero is none.
+            let limit = u64::try_from(self.start.get(id, &particle::MAX_COUNT));
+            room = limit.map_or(room.saturating_add(EVENT_ROOM), |limit| room.max(limit));
         }
         let claimed = self.geometry.budget.claim(Cost::CLOTH.of(Size { points: room, corners: 0 }));
         if let Err(refused) = claimed {

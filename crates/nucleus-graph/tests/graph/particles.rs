@@ -243,6 +243,18 @@ fn collision_events_are_lists_with_a_number_per_event() {
 }
 
 #[test]
+fn events_emit_up_to_the_limit_of_their_target() {
+    let left = |limit: u32| {
+        let nodes = format!(
+            r#""n": nucleus(usePlane: true), "q": nParticle(maxCount: {limit}), "p": nParticle(position: [(0, 1, 0)],
+            radius: 0.1, eventCount: [1], eventEmit: [5], eventParticles: "q")"#
+        );
+        places(&program(&of_nodes(&nodes, "")), 24).len()
+    };
+    assert_eq!([left(3), left(50)], [3, 5]);
+}
+
+#[test]
 fn bad_ramps_lists_and_events_are_errors_that_name_them() {
     let errors = |fields: &str| {
         let nodes = format!(r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0), (1, 0, 0)], {fields})"#);
