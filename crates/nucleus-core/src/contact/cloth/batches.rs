@@ -129,13 +129,12 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         let of =
             |is_free: bool| found.clone().filter(move |candidate| candidate.params.has_free_point == is_free);
         free_points.list.retain(|contact| update.keeps(contact));
-        free_points.add(of(true), update);
-        free_points.list.sort_by_key(ClothContact::points);
-        free_points.sort_by_task(update.blocks, order);
+        // By their points, so that the order of free points does not depend on that of earlier searches.
+        free_points.merge(of(true), update, ClothContact::points);
         if update.refresh.is_incremental() {
             initial.disable_violated(update);
             incremental.list.retain(|contact| update.keeps(contact));
-            incremental.merge(of(false), update, order);
+            incremental.merge(of(false), update, |_| ());
         } else {
             initial.list.retain(|contact| update.keeps(contact));
             initial.list.extend(incremental.list.iter().filter(|contact| update.keeps(contact)));
@@ -220,7 +219,11 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
     fn sort_by_task(&mut self, (block, blocks): Blocks<'_>, order: &mut Vec<Place>) {
         let Self { list, disabled, colouring, .. } = self;
         *disabled = 0; // retained contacts are enabled
-        sort(list, block, order);
+        order.clear();
+        let keys = list.iter().map(|contact| task_key(contact.points().map(|point| block[point as usize])));
+        order.extend(keys.zip(0..));
+        order.sort_unstable();
+        permute(list, order);
         colouring.assign(order.iter().map(|place| place.0), blocks);
         self.list_uncertified();
     }
@@ -232,19 +235,21 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
             .extend((0..).zip(&*list).filter(|(_, contact)| !contact.params.certified).map(|(at, _)| at));
     }
 
-    /// Adds the contacts of candidates to contacts that are sorted by task, each behind those of its task.
-    fn merge<'a>(
+    /// Adds the contacts of candidates to contacts that are sorted by task, and in a task by `order`: behind those that are
+    /// equal in both.
+    fn merge<'a, K: Ord>(
         &mut self,
         candidates: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
         &ListUpdate { blocks: (block, blocks), start, .. }: &ListUpdate<'_, R>,
-        order: &mut Vec<Place>,
+        order: impl Fn(&ClothContact<R, N, M>) -> K,
     ) {
-        let key =
+        let task =
             |contact: &ClothContact<R, N, M>| task_key(contact.points().map(|point| block[point as usize]));
+        let key = |contact: &ClothContact<R, N, M>| (task(contact), order(contact));
         let mut incoming = std::mem::take(&mut self.incoming);
         incoming.clear();
         incoming.extend(candidates.map(|candidate| ClothContact::new(candidate, start)));
-        sort(&mut incoming, block, order);
+        incoming.sort_by_key(key);
         self.reserve(incoming.len());
         let Self { list, colouring, .. } = self;
         let mut sorted = list.len();
@@ -260,7 +265,7 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
             to -= 1;
             list[to] = *contact;
         }
-        colouring.assign(list.iter().map(key), blocks);
+        colouring.assign(list.iter().map(task), blocks);
         self.incoming = incoming;
         self.list_uncertified();
     }
@@ -309,17 +314,4 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
         }
         count.into_inner()
     }
-}
-
-/// Sorts contacts by task, each behind the earlier ones of its task. `block` is that of each point.
-fn sort<R: Real, const N: usize, const M: usize>(
-    list: &mut [ClothContact<R, N, M>],
-    block: &[u32],
-    order: &mut Vec<Place>,
-) {
-    order.clear();
-    let keys = list.iter().map(|contact| task_key(contact.points().map(|point| block[point as usize])));
-    order.extend(keys.zip(0..));
-    order.sort_unstable();
-    permute(list, order);
 }

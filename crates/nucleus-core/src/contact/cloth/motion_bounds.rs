@@ -126,11 +126,13 @@ impl<R: Real> BoundPredictor<R> {
         Self { step_start: R::from_f64((now.from - interval[0]) / length), steps: R::from_f64(length / step) }
     }
 
-    /// Extrapolates the line at `rate` per step. The radius has room for this step's own motion.
+    /// Extrapolates the line by this step's motion, and at `rate` per step after it. The radius has room for this step.
     #[inline(always)]
     pub fn extrapolate(&self, before: [R; 3], [motion, rate]: [[R; 3]; 2], radius: R) -> Trajectory<R> {
-        let travel = scale(rate, self.steps);
-        let residual = sub(motion, rate);
+        let left = self.steps * (R::ONE - self.step_start);
+        let mean = scale(add(motion, scale(rate, left - R::ONE)), R::ONE / left);
+        let residual = sub(motion, mean);
+        let travel = scale(mean, self.steps);
         let radius = radius + dot(residual, residual).sqrt();
         Trajectory { origin: sub(before, scale(travel, self.step_start)), travel, radius }
     }
