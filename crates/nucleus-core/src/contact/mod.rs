@@ -78,8 +78,8 @@
 //! | `TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |
 //! | `cloth::broad_phase::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
 //! | `cloth::broad_phase::BOUND_RADIUS` | 0.4 t or 0.08 e | smaller: more searches; larger: more contacts |
-//! | `cloth::broad_phase::MAX_TRAVEL` | 2 e | longer boxes overlap too much |
 //! | `cloth::motion_bounds::KEEP_SHARE` | 0.8 | of the radius, within which a bound is kept without search |
+//! | `cloth::local_anchors::ROUNDINGS` | 96 | rounding errors of the extent, in a gap and its certificate |
 //! | `cloth::elements::GROUP_SIZE` | 8 triangles | within 10 % of the best on W3 |
 //! | `cloth::element_bounds::REST_GAP_SHARE` | 0.5 | a cloth thicker than its faces must still bend |
 //! | `cloth::certify::MAX_ADVANCE`, `MIN_PLANE_SHARE` | 0.9, 0.05 | the next step starts with a gap on both sides |
