@@ -8,7 +8,6 @@ use crate::bytes::checkpoint_struct;
 use crate::contact::boundary::ElementGroup;
 use crate::contact::bvh::{Aabb, Bvh, SweptBox};
 use crate::contact::cloth::element_bounds::ElementBounds;
-use crate::contact::cloth::search::NewBounds;
 use crate::math::Real;
 use crate::model::ClothModel;
 
@@ -22,6 +21,17 @@ pub struct ClothGroup {
     pub cloth: u32,
     /// Its elements, in the cloth's boundary.
     pub group: ElementGroup,
+}
+
+/// Which points of a group have new bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NewBounds {
+    /// None of them.
+    None,
+    /// Some, but not all.
+    Some,
+    /// All of them.
+    All,
 }
 
 /// All element groups.

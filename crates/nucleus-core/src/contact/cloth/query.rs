@@ -2,8 +2,9 @@
 
 use crate::contact::box_row::BoxRow;
 use crate::contact::cloth::contact::{Candidate, ContactParams};
+use crate::contact::cloth::elements::NewBounds;
 use crate::contact::cloth::new_elements::{NewElement, NewElements, NewRow};
-use crate::contact::cloth::search::{ClothSearch, NewBounds, SearchedGroup};
+use crate::contact::cloth::search::{ClothSearch, SearchedGroup};
 use crate::contact::cloth::swept_points::ElementPoints;
 use crate::contact::material::ContactMaterial;
 use crate::input::frame::Elements;

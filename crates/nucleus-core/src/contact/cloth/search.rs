@@ -2,7 +2,7 @@
 
 use crate::contact::bvh::SweptBox;
 use crate::contact::cloth::element_bounds::ElementBounds;
-use crate::contact::cloth::elements::{ClothGroup, ElementGroups};
+use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
 use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::untangling::Untangling;
 use crate::contact::material::ContactMaterial;
@@ -56,14 +56,6 @@ pub(super) struct ClothSearch<'a, R> {
     pub(super) bounds_violated: &'a [bool],
     /// By group.
     pub(super) new_bounds: &'a [NewBounds],
-}
-
-/// Which points of a group have new bounds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NewBounds {
-    None,
-    Some,
-    All,
 }
 
 impl<R: Real> ClothSearch<'_, R> {
