@@ -1,7 +1,7 @@
 //! Hints at cloth that hangs by pins and that its budget leaves stretched, before a run; and the budget that
 //! `autoEvaluations` chose.
 
-use nucleus_graph::compile::budget::{Hanging, hanging};
+use nucleus_graph::compile::budget::{Hanging, MAX_BUDGET, hanging};
 use nucleus_graph::compile::{ObjectKind, Program};
 
 use crate::figures;
@@ -42,10 +42,11 @@ fn hint(found: &Hanging, name: &str) -> String {
 pub fn budgets(program: &Program) -> Vec<String> {
     let line = |(index, own): (usize, &nucleus_graph::compile::NucleusProgram)| {
         let name = program.graph().node(own.node()).name();
-        let budget = figures::number(program.budget(index)?);
-        Some(format!(
-            "`{name}` takes {budget} evaluations in 1/24 s, for about 1 % of stretch; `evaluations` sets others"
-        ))
+        let budget = program.budget(index)?;
+        let reason =
+            if budget < MAX_BUDGET { "for about 1 % of stretch" } else { "the most it takes by itself" };
+        let budget = figures::number(budget);
+        Some(format!("`{name}` takes {budget} evaluations in 1/24 s, {reason}; `evaluations` sets others"))
     };
     program.nuclei().iter().enumerate().filter_map(line).collect()
 }

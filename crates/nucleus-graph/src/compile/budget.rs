@@ -30,8 +30,9 @@ pub struct Hanging {
 
 /// The strain that `autoEvaluations` aims at.
 const WANTED: f64 = 0.01;
-/// The most evaluations that it takes, per 1/24 s.
-const MOST: f64 = 10_000.0;
+/// The most evaluations that it takes, per 1/24 s: 20 times the cost of the default. Where the estimate is larger, the
+/// load is one that sweeps do not carry at any budget, and tethers do.
+pub const MAX_BUDGET: f64 = 2_000.0;
 /// A sweep need not hold an edge stiffer than so many times its own stiffness: it stretches by itself.
 const STIFFER: f64 = 4.0;
 
@@ -79,7 +80,7 @@ pub(super) fn choose(scene: &Scene, program: &mut Program, findings: &mut Findin
         let cloths = own.model().cloths().iter().enumerate().filter(|_| is_chosen);
         let each = cloths.filter_map(|(index, cloth)| evaluations(index, cloth, &input));
         let most = each.fold(default, f64::max);
-        (most > default).then(|| ((most / 10.0 - 1e-9).ceil() * 10.0).min(MOST))
+        (most > default).then(|| ((most / 10.0 - 1e-9).ceil() * 10.0).min(MAX_BUDGET))
     };
     let budgets = program.nuclei().iter().zip(program.first_inputs()).map(needed).collect();
     for node in program.nuclei().iter().map(NucleusProgram::node) {

@@ -35,6 +35,7 @@ fn the_budget_follows_from_edge_load_and_gravity() {
     assert_eq!(budget(&hung(1.0, "", "")), 96.0, "at least the default");
     assert_eq!(budget(&hung(0.01, "", "")), 630.0);
     assert_eq!(budget(&hung(1e-3, "", "")), 1980.0);
+    assert_eq!(budget(&hung(1e-4, "", "")), 2000.0, "at most 2,000");
     assert_eq!(budget(&hung(0.01, "autoEvaluations: false", "")), 96.0);
     assert_eq!(budget(&hung(0.01, "evaluations: 50", "")), 50.0);
     // Tethers carry the load of the pins: 8 points in a line remain.

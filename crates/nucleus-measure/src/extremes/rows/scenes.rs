@@ -97,6 +97,7 @@ pub(super) fn rows() -> Vec<StressCase> {
 fn material() -> Vec<StressCase> {
     vec![
         row!("mass/mass-ratio-in-a-mesh", "mass/graded-1e6.obj"; STRIP),
+        row!("mass/mass-ratio-1e4-in-a-mesh", "mass/graded-1e4.obj"; STRIP),
         row!("mass/mass-ratio-100-in-a-mesh", "mass/graded-1e2.obj"; STRIP),
         row!("mass/mass-ratio-of-cloths"; Runs { cost: CostUnit::Evaluation, ..BANNER }),
         row!("mass/mass-1e-9"; BANNER),
