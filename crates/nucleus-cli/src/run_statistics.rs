@@ -191,7 +191,7 @@ impl Count {
         if count > self.most {
             (self.most, self.frame) = (count, frame);
         }
-        self.total += count;
+        self.total = self.total.saturating_add(count);
         self.end = count;
     }
 }

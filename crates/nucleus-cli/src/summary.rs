@@ -198,6 +198,13 @@ fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
         objects.iter().find(|object| object.kind == kind).map_or("an object", |object| object.name.as_str())
     };
     let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
+    let expression = |attribute: &str, id| {
+        format!(
+            "`{attribute}` of `{}` gave a value that is not a finite number, as a division by zero does; the particle \
+             kept its own",
+            name(cloth(id))
+        )
+    };
     match input {
         InvalidInput::ColliderPoint(id, point) => {
             let (ball, point) = (name(collider(id)), point.0);
@@ -216,6 +223,8 @@ fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
         InvalidInput::InputMesh(id) => {
             format!("the input mesh of `{}` had no usable positions", name(cloth(id)))
         }
+        InvalidInput::CreationExpression(id) => expression("creationExpression", id),
+        InvalidInput::RuntimeExpression(id) => expression("runtimeExpression", id),
         InvalidInput::Cloth(id) => format!("an attribute of `{}` had no usable value", name(cloth(id))),
         InvalidInput::Collider(id) => {
             format!("an attribute of `{}` had no usable value", name(collider(id)))
@@ -320,5 +329,7 @@ mod tests {
         let said = sanitized(InvalidInput::ColliderPoint(ColliderId(0), PointId(17)), &objects);
         assert_eq!(said, "point 17 of `ball` had no usable position and kept its last one");
         assert!(sanitized(InvalidInput::Cloth(ClothId(0)), &objects).contains("`silk`"));
+        let said = sanitized(InvalidInput::RuntimeExpression(ClothId(0)), &objects);
+        assert!(said.starts_with("`runtimeExpression` of `silk` gave a value that is not a finite number"));
     }
 }

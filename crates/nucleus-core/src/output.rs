@@ -204,7 +204,8 @@ pub struct StepReport {
     pub births: u64,
     /// Particles that died in the frame.
     pub deaths: u64,
-    /// Particles that were not born because their object was full, or because their position was invalid.
+    /// Particles that were not born because their object was full, they would touch too many others, or their position was
+    /// invalid.
     pub births_refused: u64,
     /// Mean excess of density of the particles of a liquid over that at rest, at the end of the frame; of several liquids
     /// the largest.

@@ -13,7 +13,7 @@ use crate::audit::{Audit, AuditScope, Audited, Closeness, GroundPlanes, collisio
 use crate::checks::FrameReport;
 use crate::compile::{Object, Program};
 
-use combined::{CombinedObserver, CombinedState, combined_report};
+use combined::{CombinedObserver, CombinedState, combined_report, with_evaluation};
 use nucleus_run::{NucleusRun, SolverCall};
 
 mod combined;
@@ -167,14 +167,18 @@ impl<R: Real> Simulation<R> {
         let solver = &run.solver;
         let position = |cloth, point: PointId| solver.point(cloth, point.index());
         let mut input = interval.input(&mut run.attachments, &position);
-        input.particle_changes = interval.particle_changes(solver);
+        let invalid_results = &mut run.attachments.invalid_results;
+        input.particle_changes = interval.particle_changes(solver, invalid_results);
+        let (invalid_results, births_refused) =
+            (std::mem::take(invalid_results), std::mem::take(&mut run.attachments.births_refused));
+        let complete = |report| with_evaluation(report, invalid_results, births_refused);
         change(&run.solver, &mut input);
         let first_cloth = self.program.nuclei()[call.nucleus].cloths().start;
         let span = [observers.done, observers.done + call.substeps];
         let span = span.map(|substep| f64::from(substep) / f64::from(observers.total.max(1)));
         observers.planes.borrow_mut().begin_span(call.nucleus, first_cloth, &input, span);
         if before.is_empty() && after.is_empty() && observers.total == call.substeps {
-            return run.solver.step(&input, observers.watch);
+            return complete(run.solver.step(&input, observers.watch));
         }
         let others = before.iter().map(|run| &run.solver as &dyn StateView);
         let others: Vec<&dyn StateView> = others.chain(after.iter().map(|run| &run.solver as _)).collect();
@@ -187,7 +191,7 @@ impl<R: Real> Simulation<R> {
             others,
             program: &self.program,
         };
-        run.solver.step(&input, &mut combined)
+        complete(run.solver.step(&input, &mut combined))
     }
 
     /// The current frame.

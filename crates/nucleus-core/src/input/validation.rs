@@ -62,6 +62,13 @@ pub enum InvalidInput {
     /// A number of a constraint, or a link that refers to points that do not exist; by the index of the constraint.
     #[error("constraint {0} has a number that is not usable, or a link to points that do not exist")]
     Constraint(u32),
+    /// A velocity, place or lifespan that an expression gave for a new particle. The solver evaluates no expressions: its
+    /// caller reports this and the next.
+    #[error("the expression at birth of the particles of cloth {} gave a value that is not a finite number", .0.0)]
+    CreationExpression(ClothId),
+    /// A velocity or lifespan that an expression gave for a living particle.
+    #[error("the expression at run time of the particles of cloth {} gave a value that is not a finite number", .0.0)]
+    RuntimeExpression(ClothId),
     /// The duration of the frame, which must be above zero.
     #[error("the duration of the frame must be above zero")]
     Duration,

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, Pin, PointId};
+use nucleus_core::{ClothId, Pin, PointId, Sanitized};
 
 use crate::attributes::dynamic_constraint;
 use crate::graph::{EvalContext, NodeId};
@@ -25,6 +25,10 @@ pub(crate) struct AttachmentState {
     pub(crate) formed: Vec<bool>,
     /// The state of each emitter from frame to frame.
     pub(crate) emitters: Vec<EmitterState>,
+    /// Invalid results of expressions per particle since the last call of the solver. Checkpoints do not hold them.
+    pub(crate) invalid_results: Sanitized,
+    /// Births since the last call of the solver that the emitters did not make, as no object has room for them.
+    pub(crate) births_refused: u64,
 }
 
 impl NucleusProgram {

@@ -98,7 +98,7 @@ impl EvaluationInterval<'_> {
             exclusions: self.exclusions(),
             fields: self.fields(duration),
             fields_per_substep: to.get(nucleus, &nucleus::FIELDS_PER_SUBSTEP),
-            births: self.births(&mut attachments.emitters, duration),
+            births: self.births(attachments, duration),
             particle_changes: Vec::new(),
         }
     }

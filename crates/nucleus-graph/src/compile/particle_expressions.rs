@@ -1,10 +1,12 @@
 //! Expressions per particle: statements that run when a particle is born, and at the start of each frame.
 //!
 //! They have no loops, read the particle alone and write its velocity, its lifespan and, at birth, its place. A result that is
-//! not a finite number changes nothing.
+//! not a finite number changes nothing, and is counted; an infinite lifespan never ends.
 
 use nalgebra::Vector3;
-use nucleus_core::{Birth, ClothId, ParticleAge, ParticleChange, StateView, unit_random};
+use nucleus_core::{
+    Birth, ClothId, InvalidInput, ParticleAge, ParticleChange, Sanitized, StateView, unit_random,
+};
 
 use crate::attributes::{Key, n_particle, particle};
 use crate::graph::NodeId;
@@ -46,6 +48,14 @@ impl Compiler<'_> {
     }
 }
 
+/// Adds particles for which an expression gave no valid result.
+pub(super) fn add_invalid(sanitized: &mut Sanitized, count: u64, input: InvalidInput) {
+    if count > 0 {
+        sanitized.count += count;
+        sanitized.first = sanitized.first.or(Some(input));
+    }
+}
+
 /// Random numbers of a particle in a frame; the seed is that of the object.
 fn randoms(id: u64, frame: f64, seed: u64) -> [f64; 3] {
     [0, 1, 2].map(|k| unit_random([id, frame.to_bits() ^ (seed << 2 | k)]))
@@ -59,11 +69,12 @@ impl EvaluationInterval<'_> {
     }
 
     /// Runs the expression at birth for the births of an object; `first` is the number of the first among all of its
-    /// emitter.
-    pub(super) fn create(&self, node: NodeId, first: u64, births: &mut [Birth]) {
+    /// emitter. Returns the number of particles for which it gave an invalid result.
+    pub(super) fn create(&self, node: NodeId, first: u64, births: &mut [Birth]) -> u64 {
         let Some(statements) = self.statements(node, &n_particle::CREATION_EXPRESSION, WRITABLE[1]) else {
-            return;
+            return 0;
         };
+        let mut invalid = 0;
         let seed = self.to.get(node, &particle::SEED) as u64;
         for (birth, id) in births.iter_mut().zip(first..) {
             let frame = self.from.frame() + (self.to.frame() - self.from.frame()) * birth.time;
@@ -71,14 +82,20 @@ impl EvaluationInterval<'_> {
                 self.values([birth.velocity, birth.position], birth.lifespan, (0.0, id, frame), seed);
             statements.run(&mut values);
             let [velocity, place] = [0, 4].map(|at| self.in_metres(&values[at..at + 3]));
+            invalid += u64::from(velocity.is_none() || place.is_none() || values[3].is_nan());
             birth.velocity = velocity.unwrap_or(birth.velocity);
             birth.position = place.unwrap_or(birth.position);
             birth.lifespan = Some(values[3]).filter(|x| !x.is_nan()).unwrap_or(birth.lifespan);
         }
+        invalid
     }
 
-    /// What expressions at run time change about living particles.
-    pub(crate) fn particle_changes(&self, view: &dyn StateView) -> Vec<ParticleChange> {
+    /// What expressions at run time change about living particles. Invalid results are counted in `sanitized`.
+    pub(crate) fn particle_changes(
+        &self,
+        view: &dyn StateView,
+        sanitized: &mut Sanitized,
+    ) -> Vec<ParticleChange> {
         let mut changes = Vec::new();
         for (cloth, source) in (0..).map(ClothId).zip(&self.nucleus.cloths) {
             if !source.is_particles {
@@ -86,19 +103,22 @@ impl EvaluationInterval<'_> {
             }
             let statements = self.statements(source.node, &n_particle::RUNTIME_EXPRESSION, WRITABLE[0]);
             if let Some(statements) = statements {
-                self.run_on(&statements, (cloth, source.node), view, &mut changes);
+                let invalid = self.run_on(&statements, (cloth, source.node), view, &mut changes);
+                add_invalid(sanitized, invalid, InvalidInput::RuntimeExpression(cloth));
             }
         }
         changes
     }
 
+    /// Runs statements on the particles of an object. Returns the number of those with an invalid result.
     fn run_on(
         &self,
         statements: &Statements,
         (cloth, node): (ClothId, NodeId),
         view: &dyn StateView,
         changes: &mut Vec<ParticleChange>,
-    ) {
+    ) -> u64 {
+        let mut invalid = 0;
         let (mut ages, mut fast, mut places) = (Vec::new(), Vec::new(), Vec::new());
         view.ages(cloth, &mut ages);
         view.velocities(cloth, 1.0, &mut fast);
@@ -109,12 +129,15 @@ impl EvaluationInterval<'_> {
             let before = self.values(motion, lifespan, (age, id, self.from.frame()), seed);
             let mut values = before;
             statements.run(&mut values);
-            let velocity = (values[..3] != before[..3]).then(|| self.in_metres(&values[..3])).flatten();
+            let changed = values[..3] != before[..3];
+            let velocity = changed.then(|| self.in_metres(&values[..3])).flatten();
+            invalid += u64::from((changed && velocity.is_none()) || values[3].is_nan());
             let lifespan = Some(values[3]).filter(|x| *x != before[3] && !x.is_nan());
             if velocity.is_some() || lifespan.is_some() {
                 changes.push(ParticleChange { cloth, place, velocity, lifespan });
             }
         }
+        invalid
     }
 
     /// The values of the variables, in scene units.

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, ParticleAge, ParticleLook, Stage, StateView, StepObserver, StepReport,
-    SubstepIndex,
+    ClothId, ColliderId, ContactState, ParticleAge, ParticleLook, Sanitized, Stage, StateView, StepObserver,
+    StepReport, SubstepIndex,
 };
 
 use crate::compile::{NucleusProgram, Program};
@@ -152,6 +152,24 @@ impl StepObserver for CombinedObserver<'_> {
     }
 }
 
+/// The invalid values of two inputs, of which `a` is the earlier.
+fn combined_sanitized(a: Sanitized, b: Sanitized) -> Sanitized {
+    Sanitized { count: a.count + b.count, first: a.first.or(b.first) }
+}
+
+/// A report with the invalid results of expressions, and the births that emitters did not make.
+pub(super) fn with_evaluation(
+    report: StepReport,
+    invalid_results: Sanitized,
+    births_refused: u64,
+) -> StepReport {
+    StepReport {
+        sanitized: combined_sanitized(report.sanitized, invalid_results),
+        births_refused: report.births_refused.saturating_add(births_refused),
+        ..report
+    }
+}
+
 /// Combines two reports: of two nuclei over the same time, or of two consecutive times. Gaps and strains are the worst of
 /// both, and counts of events are added. Of consecutive times, a quantity of the state is that of the later one.
 pub(super) fn combined_report(a: &StepReport, b: &StepReport, are_consecutive: bool) -> StepReport {
@@ -171,13 +189,13 @@ pub(super) fn combined_report(a: &StepReport, b: &StepReport, are_consecutive: b
         particles: if are_consecutive { b.particles } else { a.particles + b.particles },
         births: a.births + b.births,
         deaths: a.deaths + b.deaths,
-        births_refused: a.births_refused + b.births_refused,
+        births_refused: a.births_refused.saturating_add(b.births_refused),
         density_error: if are_consecutive { b.density_error } else { a.density_error.max(b.density_error) },
         kinetic_energy: if are_consecutive { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
         broken_links: if are_consecutive { b.broken_links } else { a.broken_links + b.broken_links },
         max_weld_gap: a.max_weld_gap.max(b.max_weld_gap),
         finite: a.finite && b.finite,
-        sanitized: if a.sanitized.count > 0 { a.sanitized } else { b.sanitized },
+        sanitized: combined_sanitized(a.sanitized, b.sanitized),
         stopped: a.stopped || b.stopped,
     }
 }

@@ -81,7 +81,7 @@ impl<R: Real> NucleusRun<R> {
     /// Appends the state to a checkpoint.
     pub(super) fn save(&self, out: &mut Vec<u8>) {
         let Self { solver, attachments, now, evaluated, was_skipped } = self;
-        let AttachmentState { held, formed, emitters } = attachments;
+        let AttachmentState { held, formed, emitters, .. } = attachments;
         solver.save().encode(out);
         held.encode(out);
         formed.encode(out);
@@ -108,7 +108,7 @@ impl<R: Real> NucleusRun<R> {
             return Err(RestoreError::OtherModel);
         }
         let solver = Solver::restored(nucleus.model().clone(), threads, &solver)?;
-        let attachments = AttachmentState { held, formed, emitters };
+        let attachments = AttachmentState { held, formed, emitters, ..AttachmentState::default() };
         Ok(Self { solver, attachments, now, evaluated, was_skipped })
     }
 }

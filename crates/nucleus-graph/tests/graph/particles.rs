@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use nucleus_core::{Birth, Elements, RampInput, RampTarget};
+use nucleus_core::{Birth, ClothId, Elements, InvalidInput, RampInput, RampTarget, Sanitized};
+use nucleus_graph::Simulation;
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::read_scene_text;
 
@@ -402,6 +403,43 @@ fn expressions_set_velocities_and_lifespans_at_birth_and_in_each_frame() {
     assert!((moved[0][1] - 1.0).abs() < 1e-5 && (moved[1][1] - 2.0).abs() < 1e-5, "{moved:?}");
     // In the third frame, which begins 2/24 s after the start, the second one dies.
     assert_eq!([places(&program, 2).len(), places(&program, 3).len()], [2, 1]);
+}
+
+/// What a run of some frames reports of each: the invalid values, and the births that were refused.
+fn reports(nodes: &str, frames: usize) -> Vec<(Sanitized, u64)> {
+    let mut simulation = Simulation::<f32>::new(&program(&of_nodes(nodes, "")), 1);
+    let reports = (0..frames).map(|_| simulation.advance(&mut ()).report);
+    reports.map(|report| (report.sanitized, report.births_refused)).collect()
+}
+
+#[test]
+fn an_expression_that_gives_no_finite_number_is_reported_with_its_count() {
+    let of = |count, first| Sanitized { count, first: (count > 0).then_some(first) };
+    let runtime = |text: &str| {
+        let nodes = format!(
+            r#""n": nucleus(gravity: 0), "q": nParticle(position: [(0, 0, 0), (5, 0, 0), (9, 0, 0)],
+            runtimeExpression: "{text}")"#
+        );
+        reports(&nodes, 2)
+    };
+    let invalid = |count| (of(count, InvalidInput::RuntimeExpression(ClothId(0))), 0);
+    // The particle at the origin, in both frames; all three, at the second frame; none.
+    assert_eq!(runtime("vy = 1 / x"), [invalid(1), invalid(1)]);
+    assert_eq!(runtime("vx = sqrt(0.01 - time)"), [invalid(0), invalid(3)]);
+    assert_eq!(runtime("vx = log(0 - 1 - x); lifespan = 0 / 0"), [invalid(3), invalid(3)]);
+    assert_eq!(runtime("vx = 1; lifespan = 1 / 0"), [invalid(0), invalid(0)]);
+    let nodes = r#""n": nucleus(), "q": nParticle(creationExpression: "x = 1 / (id - 1)", maxCount: 100),
+        "e": pointEmitter(target: "q", emitterType: omni, rate: 48)"#;
+    let first = InvalidInput::CreationExpression(ClothId(0));
+    assert_eq!(reports(nodes, 2), [(of(1, first), 0), (of(0, first), 0)]);
+}
+
+#[test]
+fn refused_births_are_all_that_the_emitter_asked_for() {
+    let nodes = r#""n": nucleus(), "q": nParticle(maxCount: 10, selfCollide: false),
+        "e": pointEmitter(target: "q", emitterType: omni, rate: 2.4e9)"#;
+    let refused: Vec<u64> = reports(nodes, 2).into_iter().map(|(_, refused)| refused).collect();
+    assert_eq!(refused, [99_999_990, 100_000_000]);
 }
 
 #[test]

@@ -22,13 +22,15 @@ mod start;
 mod surface;
 
 use nalgebra::Vector3;
-use nucleus_core::{Birth, ClothId};
+use nucleus_core::{Birth, ClothId, InvalidInput};
 
 use crate::animation::Affine;
 use crate::attributes::{Choice, particle, point_emitter};
 use crate::graph::{EvalContext, Graph, NodeId};
 
+use super::attachments::AttachmentState;
 use super::compiler::Compiler;
+use super::particle_expressions::add_invalid;
 use super::program::EvaluationInterval;
 use super::sources::{Emitter, EmitterState, EmittingMesh};
 
@@ -168,12 +170,12 @@ impl Emitter {
 
 impl EvaluationInterval<'_> {
     /// The particles that are born in the interval, in the order of their times; `seconds` is its length of solver time.
-    pub(super) fn births(&self, states: &mut Vec<EmitterState>, seconds: f64) -> Vec<Birth> {
-        states.resize(self.nucleus.emitters.len(), EmitterState::default());
+    pub(super) fn births(&self, kept: &mut AttachmentState, seconds: f64) -> Vec<Birth> {
+        kept.emitters.resize(self.nucleus.emitters.len(), EmitterState::default());
         let mut births = Vec::new();
-        for (emitter, state) in self.nucleus.emitters.iter().zip(states) {
+        for (emitter, at) in self.nucleus.emitters.iter().zip(0..) {
             if !self.plays(&self.nucleus.cloths[emitter.cloth.index()]) {
-                self.emit(emitter, state, seconds, &mut births);
+                self.emit((emitter, at), kept, seconds, &mut births);
             }
         }
         self.recorded_births(&mut births);
@@ -181,7 +183,15 @@ impl EvaluationInterval<'_> {
         births
     }
 
-    fn emit(&self, emitter: &Emitter, state: &mut EmitterState, seconds: f64, births: &mut Vec<Birth>) {
+    /// Adds the births of an emitter, which is at this place among all.
+    fn emit(
+        &self,
+        (emitter, at): (&Emitter, usize),
+        kept: &mut AttachmentState,
+        seconds: f64,
+        births: &mut Vec<Birth>,
+    ) {
+        let state = &mut kept.emitters[at];
         let rates = emitter.rates([&self.from, &self.to], seconds).map(|rate| rate * seconds);
         if emitter.cycles(self) {
             state.emitted = 0;
@@ -201,12 +211,15 @@ impl EvaluationInterval<'_> {
         // An object has no room for more.
         let room = self.nucleus.room_of(emitter.cloth);
         let earlier = births.len();
-        for k in 0..(count as u64).min(room) {
+        let made = (count as u64).min(room);
+        kept.births_refused = kept.births_refused.saturating_add(count as u64 - made);
+        for k in 0..made {
             let time = time_of(k as f64 + 1.0 - remainder, rates);
             let random = Random::new([flight.seed, emitter.place, first + k]);
             births.extend(flight.birth(emitter.cloth, time, &launch, random, &lifespan));
         }
-        self.create(emitter.particles, first, &mut births[earlier..]);
+        let invalid = self.create(emitter.particles, first, &mut births[earlier..]);
+        add_invalid(&mut kept.invalid_results, invalid, InvalidInput::CreationExpression(emitter.cloth));
     }
 
     /// What all particles of an emitter share in the interval.
