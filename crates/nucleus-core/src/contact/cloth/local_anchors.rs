@@ -1,5 +1,5 @@
-//! Anchors in the solver's scalar, relative to a common origin: a contact's gap from them takes a third of the
-//! instructions, and is exact within a tolerance. Nearly all contacts that a sweep visits are farther apart than that.
+//! Anchors in the solver's scalar, relative to a common origin: a contact's gap from them is computed in lanes, and is
+//! exact within a tolerance. Nearly all contacts that a sweep visits exceed their thickness by more.
 
 use crate::math::{Lanes, Real, Row4};
 
