@@ -21,7 +21,6 @@ use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::untangling::{Correction, Intersection};
 use crate::contact::collider::contacts::ColliderContacts;
-use crate::contact::collider::query::GROUP_SIZE;
 use crate::contact::material::ContactMaterial;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::Elements;
@@ -336,22 +335,14 @@ fn pairs_are_valid<R: Real>(
     cloth: &ClothModel<R>,
     collider: &ColliderModel,
 ) -> bool {
-    let (groups, points) = (cloth.boundary.groups(GROUP_SIZE).count(), cloth.points());
+    let points = cloth.points();
     let is_ours = |ours: &[u32]| ours.iter().all(|point| points.contains(point));
     let is_theirs = |theirs: &[u32]| theirs.iter().all(|&point| (point as usize) < collider.positions.len());
-    let is_valid = |group: u32, ours: &[u32], theirs: &[u32]| {
-        (group as usize) < groups && is_ours(ours) && is_theirs(theirs)
-    };
+    let is_valid = |ours: &[u32], theirs: &[u32]| is_ours(ours) && is_theirs(theirs);
     let faces = collider.boundary.triangles.len();
-    list.point_face.iter().all(|contact| is_valid(contact.group, &contact.points, &contact.collider_points))
-        && list
-            .edge_edge
-            .iter()
-            .all(|contact| is_valid(contact.group, &contact.points, &contact.collider_points))
-        && list
-            .face_point
-            .iter()
-            .all(|contact| is_valid(contact.group, &contact.points, &contact.collider_points))
+    list.point_face.iter().all(|contact| is_valid(&contact.points, &contact.collider_points))
+        && list.edge_edge.iter().all(|contact| is_valid(&contact.points, &contact.collider_points))
+        && list.face_point.iter().all(|contact| is_valid(&contact.points, &contact.collider_points))
         && list.depenetration.points.iter().all(|&(point, face)| is_ours(&[point]) && (face as usize) < faces)
         && is_ours(&list.depenetration.suspects)
 }
@@ -395,7 +386,7 @@ checkpoint_struct!([R: Real] ColliderContacts<R> {
     columns: [],
     values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    rebuilt: [cloth, collider, is_near, by_point, active, is_searched, searched_groups, tasks, unproven],
+    rebuilt: [cloth, collider, is_near, by_point, active, searched_groups, tasks, unproven],
 });
 
 checkpoint_struct!([R: Real] ClothContacts<R> {

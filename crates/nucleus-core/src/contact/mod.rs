@@ -38,7 +38,7 @@
 //! | force fields of surfaces, and of points | [`force_field`], [`point_field`] |
 //! | the nearest point of a surface, and what a ray hits | [`placed_surface`] |
 //! | elements that do not collide with each other | [`pair_filter`], updated by [`exclusion`] |
-//! | the closest points of two elements | [`narrow_phase`] |
+//! | the closest points of two elements; of four pairs at a time | [`narrow_phase`], [`closest_lanes`] |
 //! | certificates for linear motion | [`ccd`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`], [`collider_maps`] |
 //! | the split of a push, friction, adhesion, the law of restitution | [`response`] |
@@ -92,6 +92,7 @@ pub mod boundary;
 pub mod box_row;
 pub mod bvh;
 pub mod ccd;
+pub mod closest_lanes;
 pub mod cloth;
 pub mod collider;
 pub mod collider_maps;

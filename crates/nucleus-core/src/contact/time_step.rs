@@ -282,23 +282,6 @@ impl<R: Real> ColliderStep<'_, R> {
         Point::from(self.anchors[point as usize]) + Point::new(x.to_f64(), y.to_f64(), z.to_f64())
     }
 
-    /// How far the farthest of some points of the collider moves in the candidate interval, in metres, relative to a
-    /// frame that moves by `frame_travel` metres in a frame.
-    #[inline]
-    pub(in crate::contact) fn longest_travel<const M: usize>(
-        &self,
-        points: [u32; M],
-        frame_travel: [R; 3],
-    ) -> f64 {
-        let frame_travel = Point::from(frame_travel.map(R::to_f64));
-        let mut most = 0.0f64;
-        for point in points {
-            let [start, end] = [self.collider[0][point as usize], self.collider[1][point as usize]];
-            most = most.max((end - start - frame_travel).norm_squared());
-        }
-        most.sqrt() * (self.interval[1] - self.interval[0])
-    }
-
     #[inline(always)]
     pub(in crate::contact) fn row(&self, point: u32) -> Row4<R> {
         self.writer.row(point)

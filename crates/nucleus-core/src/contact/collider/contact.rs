@@ -11,18 +11,18 @@ use std::sync::atomic::Ordering;
 use nalgebra::Vector3;
 
 use crate::bytes::{Encode, Reader};
-use crate::contact::collider::motion_bounds::{MotionBounds, squared_diagonal};
+use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::separation::{best_plane, separated};
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase;
 use crate::contact::time_step::{ColliderStep, ContactCounters};
-use crate::math::{Real, Row4, add, dot, max, scale, sub};
+use crate::math::{Real, Row4, add, dot, scale, sub};
 
 pub(super) type Point = Vector3<f64>;
 
-/// Motion along the plane for which it stays valid, as a share of the thickness: around an edge or a corner the
-/// error is below 1e-5 of the thickness, and on a face it is zero.
+/// Motion along the plane for which it stays valid, as a share of the rest gap: around an edge or a corner the
+/// error is below 1e-5 of it, and on a face it is zero.
 const PLANE_VALIDITY: f64 = 1.0 / 256.0;
 
 /// A contact of a cloth element of `N` points and a collider element of `M` points. Point and face: 1 and 3; edge
@@ -33,8 +33,6 @@ pub struct ColliderContact<R, const N: usize, const M: usize> {
     pub points: [u32; N],
     /// The collider's points.
     pub collider_points: [u32; M],
-    /// The element group of the cloth that it was found for.
-    pub group: u32,
     pub(super) normal: [R; 3],
     /// n·q less n·anchor for each cloth point, at the start and at the end of the candidate interval.
     plane: [[R; N]; 2],
@@ -50,14 +48,12 @@ pub struct ColliderContact<R, const N: usize, const M: usize> {
 }
 
 impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M> {
-    const SIZE: usize =
-        <[u32; N]>::SIZE + <[u32; M]>::SIZE + u32::SIZE + 3 * <[R; 3]>::SIZE + 3 * <[R; N]>::SIZE;
+    const SIZE: usize = <[u32; N]>::SIZE + <[u32; M]>::SIZE + 3 * <[R; 3]>::SIZE + 3 * <[R; N]>::SIZE;
     fn encode(&self, out: &mut Vec<u8>) {
         // Each frame begins with no contact known to be idle.
         let Self {
             points,
             collider_points,
-            group,
             normal,
             plane,
             weights,
@@ -67,19 +63,16 @@ impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M
         } = self;
         points.encode(out);
         collider_points.encode(out);
-        group.encode(out);
         [*normal, *surface_motion, *plane_origin].encode(out);
         [plane[0], plane[1], *weights].encode(out);
     }
     fn decode(from: &mut Reader<'_>) -> Option<Self> {
-        let (points, collider_points, group) =
-            (Encode::decode(from)?, Encode::decode(from)?, Encode::decode(from)?);
+        let (points, collider_points) = (Encode::decode(from)?, Encode::decode(from)?);
         let [normal, surface_motion, plane_origin] = Encode::decode(from)?;
         let [start, end, weights] = Encode::decode(from)?;
         Some(Self {
             points,
             collider_points,
-            group,
             normal,
             plane: [start, end],
             weights,
@@ -88,6 +81,14 @@ impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M
             idle_until: [R::ZERO; N],
         })
     }
+}
+
+/// A separating plane: its normal, and n·q less n·anchor for each cloth point, at the start and at the end of the candidate
+/// interval.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plane<R, const N: usize> {
+    pub(super) normal: [R; 3],
+    pub(super) offsets: [[R; N]; 2],
 }
 
 /// The outcome of resolving a contact.
@@ -128,51 +129,29 @@ pub enum Certificate {
 }
 
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
-    /// A contact with its plane across the shortest line at the start of the step. `None` if the motion bounds
-    /// exclude contact within the candidate interval.
-    #[inline]
-    pub fn candidate(
+    /// A contact with its plane across the shortest line, whose ends are given by weights.
+    #[inline(always)]
+    pub(super) fn across(
         points: [u32; N],
         collider_points: [u32; M],
-        group: u32,
+        plane: Plane<R, N>,
+        weights: ([f64; N], [f64; M]),
         step: &ColliderStep<'_, R>,
-        bounds: &MotionBounds<'_, R>,
-    ) -> Option<Self> {
-        let x = step.cloth_start_positions(points);
-        let [q, _] = step.collider_positions(collider_points);
-        let (b, c) = closest(x, q);
-        let line = interpolate(x, b) - interpolate(q, c);
-        // Neither side moves farther than the diagonal of its bound.
-        let range = step.interaction_range();
-        let mut ours = R::ZERO;
-        for point in points {
-            ours = max(ours, squared_diagonal(&bounds.of(point)));
-        }
-        let ours = ours.sqrt().to_f64();
-        let theirs = step.longest_travel(collider_points, bounds.frame_travel);
-        if line.norm() > range.to_f64() + ours + theirs {
-            return None;
-        }
-        let touching = || cross_direction(x, q).try_normalize(0.0).unwrap_or_else(Point::y);
-        let normal = line.try_normalize(1e-12).unwrap_or_else(touching);
+    ) -> Self {
+        let Plane { normal, offsets } = plane;
         let zero = [R::ZERO; 3];
         let mut contact = Self {
             points,
             collider_points,
-            group,
-            normal: zero,
-            plane: [[R::ZERO; N]; 2],
+            normal,
+            plane: offsets,
             weights: [R::ZERO; N],
             surface_motion: zero,
             plane_origin: zero,
             idle_until: [R::ZERO; N],
         };
-        contact.set_plane_offsets(normal, step);
-        let gap = contact.min_gap_in_interval(step, bounds);
-        (gap < range).then(|| {
-            contact.set_plane_origin((b, c), step);
-            contact
-        })
+        contact.set_plane_origin(weights, step);
+        contact
     }
 
     /// A contact with a plane of its own, for tests.
@@ -182,7 +161,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         Self {
             points,
             collider_points: [0; M],
-            group: 0,
             normal,
             plane,
             weights: [R::ZERO; N],
@@ -240,13 +218,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             }
         }
         least
-    }
-
-    /// The smallest gap over the motion bounds within the candidate interval.
-    #[inline(always)]
-    fn min_gap_in_interval(&self, step: &ColliderStep<'_, R>, bounds: &MotionBounds<'_, R>) -> R {
-        let [from, to] = [bounds.travel_at(step.interval[0]), bounds.travel_at(step.interval[1])];
-        self.min_gap([(R::ZERO, from), (R::ONE, to)], bounds)
     }
 
     /// Rebases the plane on anchors that move to the points' positions; the collider is at rest.
@@ -313,7 +284,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let time = R::from_f64(step.time[1]);
         let displacement = self.contact_displacement(displacement);
         let away = sub(sub(displacement, scale(self.surface_motion, time)), self.plane_origin);
-        let most = step.thickness * R::from_f64(PLANE_VALIDITY);
+        let most = self.rest_gap(step, self.weights) * R::from_f64(PLANE_VALIDITY);
         dot(away, away) <= most * most
     }
 
@@ -386,7 +357,6 @@ impl<R: Real> ColliderContact<R, 1, 3> {
         let mut contact = Self {
             points: [point],
             collider_points: corners,
-            group: 0,
             normal: zero,
             plane: [[R::ZERO; 1]; 2],
             weights: [R::ZERO; 1],

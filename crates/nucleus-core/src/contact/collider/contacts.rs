@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::contact::collider::Boxes;
 use crate::contact::collider::active_set::{ActiveSet, CERTIFIED_GAP, Selection};
+use crate::contact::collider::candidates::OverlappingPair;
 use crate::contact::collider::contact::{Certificate, ColliderContact, Outcome};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::depenetration::Depenetration;
@@ -36,8 +37,6 @@ pub struct ColliderContacts<R> {
     pub by_point: Vec<u64>,
     /// The contacts that can touch within the next few time steps.
     pub active: ActiveSet<R>,
-    /// Whether each group was part of the last search.
-    pub is_searched: Vec<bool>,
     /// The groups of the last search.
     pub searched_groups: Vec<u32>,
     /// The results of search tasks.
@@ -51,20 +50,34 @@ pub struct ColliderContacts<R> {
 /// The contacts that a task finds, and its buffers.
 #[derive(Debug)]
 pub struct FoundContacts<R> {
-    pub(super) point_face: Vec<ColliderContact<R, 1, 3>>,
-    pub(super) edge_edge: Vec<ColliderContact<R, 2, 2>>,
-    pub(super) face_point: Vec<ColliderContact<R, 3, 1>>,
+    pub(super) point_face: FoundPairs<R, 1, 3>,
+    pub(super) edge_edge: FoundPairs<R, 2, 2>,
+    pub(super) face_point: FoundPairs<R, 3, 1>,
     /// Points found behind a face.
     pub(super) suspects: Vec<u32>,
     /// Boxes of the current group.
     pub(super) boxes: Boxes,
 }
 
+/// Pairs of elements of one kind.
+#[derive(Debug)]
+pub struct FoundPairs<R, const N: usize, const M: usize> {
+    /// Those that can touch.
+    pub(super) contacts: Vec<ColliderContact<R, N, M>>,
+    /// Those whose boxes overlap.
+    pub(super) overlapping: Vec<OverlappingPair<N, M>>,
+}
+
+impl<R, const N: usize, const M: usize> Default for FoundPairs<R, N, M> {
+    fn default() -> Self {
+        Self { contacts: Vec::new(), overlapping: Vec::new() }
+    }
+}
+
 impl<R> Default for FoundContacts<R> {
     fn default() -> Self {
-        let boxes = Boxes::default();
-        let (point_face, edge_edge, face_point) = (Vec::new(), Vec::new(), Vec::new());
-        Self { point_face, edge_edge, face_point, suspects: Vec::new(), boxes }
+        let (point_face, edge_edge, face_point) = Default::default();
+        Self { point_face, edge_edge, face_point, suspects: Vec::new(), boxes: Boxes::default() }
     }
 }
 
@@ -82,7 +95,6 @@ impl<R: Real> ColliderContacts<R> {
             face_point: Vec::new(),
             by_point: Vec::new(),
             active: ActiveSet::default(),
-            is_searched: Vec::new(),
             searched_groups: Vec::new(),
             tasks: Vec::new(),
             depenetration: Depenetration::default(),

@@ -8,7 +8,7 @@
 //! | the start of a frame: materials, and which colliders each cloth can touch | [`frame_start`] |
 //! | motion bounds of points | [`motion_bounds`] |
 //! | broad phase: when bounds are predicted and contacts searched | [`broad_phase`] |
-//! | which elements can touch, group by group | [`query`] |
+//! | which elements can touch, group by group; four pairs at a time | [`query`], [`candidates`] |
 //! | the contacts of one cloth with one collider, and their certificates | [`contacts`] |
 //! | the contacts that can touch within the next few time steps | [`active_set`] |
 //! | a sweep over them | [`sweep`] |
@@ -26,6 +26,7 @@
 
 pub mod active_set;
 pub mod broad_phase;
+pub mod candidates;
 pub mod contact;
 pub mod contacts;
 pub mod frame_start;

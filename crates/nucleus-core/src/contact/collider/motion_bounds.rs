@@ -1,6 +1,6 @@
 //! Motion bounds of points among colliders: a box that contains a point's displacement over a window of time steps.
 
-use crate::math::{Lanes, Real, Row4, dot, max, scale, sub};
+use crate::math::{Lanes, Real, Row4, max, scale, sub};
 
 /// Distance that anything may move in a candidate interval, in edge lengths.
 pub const MAX_TRAVEL: f64 = 2.0;
@@ -61,13 +61,6 @@ pub fn predict_box<R: Real>(
         Row4([x, y, z, R::ZERO])
     };
     [corner(start.least(now).least(end) - margin), corner(start.most(now).most(end) + margin)]
-}
-
-/// The square of the diagonal of a bound, in square metres.
-#[inline(always)]
-pub fn squared_diagonal<R: Real>([low, high]: &MotionBox<R>) -> R {
-    let diagonal = sub(high.xyz(), low.xyz());
-    dot(diagonal, diagonal)
 }
 
 /// How far a bound extends beyond an older one, in metres: the sum over all axes.

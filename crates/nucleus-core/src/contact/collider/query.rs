@@ -1,6 +1,6 @@
 //! Broad-phase query: finds the pairs of cloth and collider elements that can touch within a candidate interval.
 //!
-//! Only groups with a point that has a new motion bound are searched. All other contacts stay.
+//! Only elements with a point that has a new motion bound are searched. All other contacts stay.
 
 use std::sync::Mutex;
 
@@ -8,8 +8,9 @@ use nalgebra::Vector3;
 
 use crate::contact::boundary::{ElementGroup, Pseudonormals};
 use crate::contact::bvh::Aabb;
+use crate::contact::collider::candidates::{OverlappingPair, for_candidates};
 use crate::contact::collider::contact::ColliderContact;
-use crate::contact::collider::contacts::{ColliderContacts, FoundContacts};
+use crate::contact::collider::contacts::{ColliderContacts, FoundContacts, FoundPairs};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::{Boxes, ColliderState};
 use crate::contact::depenetration::is_inside;
@@ -42,39 +43,26 @@ pub struct ColliderQuery<'a, R> {
 
 /// A group of cloth elements with its boxes.
 struct GroupBoxes<'a> {
-    index: u32,
     group: &'a ElementGroup,
     boxes: &'a Boxes,
     around: &'a Aabb,
 }
 
 /// Triangles in a group. Two are fastest: a drape takes 67 ms a frame with eight, 55 with two.
-pub const GROUP_SIZE: usize = 2;
+const GROUP_SIZE: usize = 2;
 
 /// Groups in a task.
 const GROUPS_PER_TASK: usize = 64;
 
-impl<R> FoundContacts<R> {
-    fn clear(&mut self) {
-        self.point_face.clear();
-        self.edge_edge.clear();
-        self.face_point.clear();
-        self.suspects.clear();
-    }
-}
-
 impl<R: Real> ColliderQuery<'_, R> {
-    /// Replaces the contacts of all groups with a new bound.
+    /// Replaces the contacts of all elements with a new bound.
     pub fn run(&self, list: &mut ColliderContacts<R>, pool: &ThreadPool) {
+        let boundary = &self.cloth.boundary;
         let is_new = |group: &ElementGroup| {
-            let boundary = &self.cloth.boundary;
-            let corners = boundary.triangles[group.triangles.clone()].iter().flatten();
-            corners
-                .chain(&boundary.points[group.points.clone()])
-                .any(|&point| self.bounds_violated[point as usize])
+            boundary.triangles[group.triangles.clone()].iter().any(|face| self.has_new_bound(face))
+                || self.has_new_bound(&boundary.points[group.points.clone()])
         };
         let ColliderContacts {
-            is_searched,
             searched_groups,
             tasks,
             point_face,
@@ -84,31 +72,29 @@ impl<R: Real> ColliderQuery<'_, R> {
             depenetration,
             ..
         } = list;
-        is_searched.clear();
-        is_searched.extend(self.cloth.boundary.groups(GROUP_SIZE).map(|group| is_new(&group)));
         searched_groups.clear();
-        searched_groups
-            .extend((0..).zip(&*is_searched).filter(|(_, is_new)| **is_new).map(|(group, _)| group));
-        point_face.retain(|contact| !is_searched[contact.group as usize]);
-        edge_edge.retain(|contact| !is_searched[contact.group as usize]);
-        face_point.retain(|contact| !is_searched[contact.group as usize]);
+        let groups = (0..).zip(boundary.groups(GROUP_SIZE));
+        searched_groups.extend(groups.filter(|(_, group)| is_new(group)).map(|(index, _)| index));
+        point_face.retain(|contact| !self.has_new_bound(&contact.points));
+        edge_edge.retain(|contact| !self.has_new_bound(&contact.points));
+        face_point.retain(|contact| !self.has_new_bound(&contact.points));
         let reach = self.reach();
         let chunks = searched_groups.len().div_ceil(GROUPS_PER_TASK);
         tasks.resize_with(tasks.len().max(chunks), Mutex::default);
         pool.parallel_for(chunks, |task| {
             // Uncontended: a task runs once.
             let Ok(mut found) = tasks[task].lock() else { return };
-            found.clear();
             let end = ((task + 1) * GROUPS_PER_TASK).min(searched_groups.len());
             searched_groups[task * GROUPS_PER_TASK..end]
                 .iter()
                 .for_each(|&group| self.search_group(group, &reach, &mut found));
+            self.find_contacts(&mut found);
         });
         // In the order of the groups, so that the result does not depend on the threads.
         for found in tasks[..chunks].iter_mut().filter_map(|task| task.get_mut().ok()) {
-            point_face.append(&mut found.point_face);
-            edge_edge.append(&mut found.edge_edge);
-            face_point.append(&mut found.face_point);
+            point_face.append(&mut found.point_face.contacts);
+            edge_edge.append(&mut found.edge_edge.contacts);
+            face_point.append(&mut found.face_point.contacts);
             depenetration.suspects.append(&mut found.suspects);
         }
         by_point.clear();
@@ -116,6 +102,12 @@ impl<R: Real> ColliderQuery<'_, R> {
             |(index, contact): (u64, &ColliderContact<R, 1, 3>)| u64::from(contact.points[0]) << 32 | index;
         by_point.extend((0..).zip(point_face.iter()).map(key));
         by_point.sort_unstable();
+    }
+
+    /// Whether any of these points has a new bound.
+    #[inline(always)]
+    fn has_new_bound(&self, points: &[u32]) -> bool {
+        points.iter().any(|&point| self.bounds_violated[point as usize])
     }
 
     /// The box outside of which the motion bound of a point touches nothing, relative to the moving frame.
@@ -142,7 +134,7 @@ impl<R: Real> ColliderQuery<'_, R> {
         group.triangles.is_empty() && self.cloth.boundary.points[group.points.clone()].iter().all(is_outside)
     }
 
-    /// Finds all contacts of a group, unless it is out of `reach`.
+    /// Finds all overlapping boxes of a group, unless it is out of `reach`.
     fn search_group(&self, index: u32, reach: &[Vector3<f64>; 2], found: &mut FoundContacts<R>) {
         let group = self.cloth.boundary.group(index as usize, GROUP_SIZE);
         if self.is_far(&group, reach) {
@@ -150,21 +142,22 @@ impl<R: Real> ColliderQuery<'_, R> {
         }
         let mut boxes = std::mem::take(&mut found.boxes);
         let around = self.bound_group(&group, &mut boxes);
-        let target = GroupBoxes { index, group: &group, boxes: &boxes, around: &around };
+        let target = GroupBoxes { group: &group, boxes: &boxes, around: &around };
         self.state.bvh.query(&around, |triangle| self.test_triangle(&target, triangle, found));
         found.boxes = boxes;
     }
 
-    /// Fills the boxes of a group's elements, inflated by the interaction range. Returns their union.
+    /// Fills the boxes of a group's elements, inflated by the interaction range; empty for those that keep their bounds.
+    /// Returns their union.
     fn bound_group(&self, group: &ElementGroup, boxes: &mut Boxes) -> Aabb {
         let boundary = &self.cloth.boundary;
         let thickness = self.step.interaction_range().to_f64() as f32 * (1.0 + 1e-6);
         let bound = |points: &[u32]| {
-            points
-                .iter()
-                .map(|&point| self.bound_point(point))
-                .fold(Aabb::EMPTY, Aabb::union)
-                .inflate(thickness)
+            if !self.has_new_bound(points) {
+                return Aabb::EMPTY;
+            }
+            let boxes = points.iter().map(|&point| self.bound_point(point));
+            boxes.fold(Aabb::EMPTY, Aabb::union).inflate(thickness)
         };
         boxes.triangles.clear();
         boxes
@@ -180,7 +173,7 @@ impl<R: Real> ColliderQuery<'_, R> {
     /// Tests the group's elements against a triangle of the collider and the elements that it owns.
     fn test_triangle(&self, target: &GroupBoxes<'_>, triangle: u32, found: &mut FoundContacts<R>) {
         let (boundary, theirs, boxes) = (&self.cloth.boundary, &self.collider.boundary, &self.state.boxes);
-        let GroupBoxes { index, group, boxes: ours, around } = target;
+        let GroupBoxes { group, boxes: ours, around } = target;
         let face = &boxes.triangles[triangle as usize];
         if !face.overlaps(around) {
             return;
@@ -188,31 +181,68 @@ impl<R: Real> ColliderQuery<'_, R> {
         let corners = theirs.triangles[triangle as usize];
         let points = boundary.points[group.points.clone()].iter().zip(&ours.points);
         for (&point, _) in points.filter(|(_, bound)| bound.overlaps(face)) {
-            let Some(contact) = self.candidate([point], corners, *index) else { continue };
-            found.point_face.push(contact);
-            if self.collider.pseudonormals.is_some() && self.is_behind(point, corners) {
-                found.suspects.push(point);
-            }
+            self.add(&mut found.point_face, [point], corners, triangle as usize);
         }
         let owned = theirs.owned(triangle as usize);
         for edge in owned.edges.filter(|&edge| boxes.edges[edge].overlaps(around)) {
             let edges = boundary.edges[group.edges.clone()].iter().zip(&ours.edges);
             for (&ends, _) in edges.filter(|(_, bound)| bound.overlaps(&boxes.edges[edge])) {
-                let contact = self.candidate(ends, theirs.edges[edge], *index);
-                found.edge_edge.extend(
-                    contact.filter(|contact| !self.is_behind_surface(contact, |o, n| o.at_edge(edge, n))),
-                );
+                self.add(&mut found.edge_edge, ends, theirs.edges[edge], edge);
             }
         }
         for point in owned.points.filter(|&point| boxes.points[point].overlaps(around)) {
             let faces = boundary.triangles[group.triangles.clone()].iter().zip(&ours.triangles);
             for (&face, _) in faces.filter(|(_, bound)| bound.overlaps(&boxes.points[point])) {
-                let contact = self.candidate(face, [theirs.points[point]], *index);
-                found.face_point.extend(
-                    contact.filter(|contact| !self.is_behind_surface(contact, |o, n| o.at_point(point, n))),
-                );
+                self.add(&mut found.face_point, face, [theirs.points[point]], point);
             }
         }
+    }
+
+    /// Adds a pair whose boxes overlap, if the two collide.
+    #[inline(always)]
+    fn add<const N: usize, const M: usize>(
+        &self,
+        found: &mut FoundPairs<R, N, M>,
+        points: [u32; N],
+        collider_points: [u32; M],
+        element: usize,
+    ) {
+        let (filter, collider) = self.filter;
+        if !filter.excludes_collider(&points, collider, &collider_points) {
+            found.overlapping.push(OverlappingPair { points, collider_points, element: element as u32 });
+        }
+    }
+
+    /// The narrow phase: contacts of the pairs whose boxes overlap.
+    fn find_contacts(&self, found: &mut FoundContacts<R>) {
+        let FoundContacts { point_face, edge_edge, face_point, suspects, .. } = found;
+        let is_closed = self.collider.pseudonormals.is_some();
+        self.find_contacts_of(point_face, |pair, _| {
+            if is_closed && self.is_behind(pair.points[0], pair.collider_points) {
+                suspects.push(pair.points[0]);
+            }
+            true
+        });
+        self.find_contacts_of(edge_edge, |pair, contact| {
+            !self.is_behind_surface(contact, |o, n| o.at_edge(pair.element as usize, n))
+        });
+        self.find_contacts_of(face_point, |pair, contact| {
+            !self.is_behind_surface(contact, |o, n| o.at_point(pair.element as usize, n))
+        });
+    }
+
+    fn find_contacts_of<const N: usize, const M: usize>(
+        &self,
+        found: &mut FoundPairs<R, N, M>,
+        mut accepts: impl FnMut(&OverlappingPair<N, M>, &ColliderContact<R, N, M>) -> bool,
+    ) {
+        let FoundPairs { contacts, overlapping } = found;
+        for_candidates(overlapping, self.step, &self.motion_bounds, |pair, contact| {
+            if accepts(pair, &contact) {
+                contacts.push(contact);
+            }
+        });
+        overlapping.clear();
     }
 
     /// Whether the cloth element of a contact is inside the collider and is to leave it: kept on that side, it never would.
@@ -239,20 +269,6 @@ impl<R: Real> ColliderQuery<'_, R> {
         let [from, _] = self.step.collider_positions(corners);
         let outward = (from[1] - from[0]).cross(&(from[2] - from[0]));
         outward.dot(&(self.step.start_position(point) - from[0])) < 0.0
-    }
-
-    /// The contact of two elements, if they can touch.
-    fn candidate<const N: usize, const M: usize>(
-        &self,
-        ours: [u32; N],
-        theirs: [u32; M],
-        group: u32,
-    ) -> Option<ColliderContact<R, N, M>> {
-        let (filter, collider) = self.filter;
-        if filter.excludes_collider(&ours, collider, &theirs) {
-            return None;
-        }
-        ColliderContact::candidate(ours, theirs, group, self.step, &self.motion_bounds)
     }
 
     /// The box around a point's motion bound, relative to the collider's origin.
