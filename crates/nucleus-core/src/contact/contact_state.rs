@@ -116,15 +116,18 @@ impl<R: Real> ContactPoints<'_, R> {
         };
         let collider = list.collider;
         active
-            .point_face
+            .points
+            .indices
             .iter()
             .for_each(|&k| self.set_collider_state(&point_face[k as usize], collider, material, states));
         active
-            .edge_edge
+            .edges
+            .indices
             .iter()
             .for_each(|&k| self.set_collider_state(&edge_edge[k as usize], collider, material, states));
         active
-            .face_point
+            .faces
+            .indices
             .iter()
             .for_each(|&k| self.set_collider_state(&face_point[k as usize], collider, material, states));
     }

@@ -40,6 +40,7 @@
 //! | elements that do not collide with each other | [`pair_filter`], updated by [`exclusion`] |
 //! | the closest points of two elements; of four pairs at a time | [`narrow_phase`], [`closest_lanes`] |
 //! | certificates for linear motion | [`ccd`] |
+//! | contacts as tasks that threads share | [`colouring`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`], [`collider_maps`] |
 //! | the split of a push, friction, adhesion, the law of restitution | [`response`] |
 //! | restitution at the end of a step | [`restitution`] |
@@ -96,6 +97,7 @@ pub mod closest_lanes;
 pub mod cloth;
 pub mod collider;
 pub mod collider_maps;
+pub mod colouring;
 pub mod contact_state;
 pub mod depenetration;
 pub mod exclusion;

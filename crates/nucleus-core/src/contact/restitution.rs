@@ -63,11 +63,11 @@ fn restitution_at_colliders<R: Real>(
         let material =
             pass.contact.collider_materials_of(cloth)[collider].filter(|material| material.has_restitution());
         let Some(material) = material else { continue };
-        for active in 0..pass.contact.collider_contacts[index].active.point_face.len() {
+        for active in 0..pass.contact.collider_contacts[index].active.points.indices.len() {
             let ContactPass { state, frame, span, contact, .. } = pass;
             let ContactSystem { collider_states, collider_contacts, material_maps, .. } = &**contact;
             let contact = collider_contacts[index].point_face
-                [collider_contacts[index].active.point_face[active] as usize];
+                [collider_contacts[index].active.points.indices[active] as usize];
             let (h, interval) = (restitution.h.to_f64(), collider_contacts[index].interval);
             let view =
                 ColliderStepArgs { material, material_maps, at: collider, h, time: [span.to; 2], interval };

@@ -3,9 +3,9 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::colouring::{Colouring, Place, permute, task_key};
 use crate::contact::cloth::contact::{Candidate, ClothContact, ClothStep};
 use crate::contact::cloth::search::RefreshKind;
+use crate::contact::colouring::{Colouring, Place, permute, task_key};
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
@@ -302,7 +302,7 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
             pool.parallel_for(colour.len(), |task| {
                 // SAFETY: the runs of two tasks do not overlap.
                 #[allow(unsafe_code)]
-                let run = unsafe { list.run(colouring.task(colour, task)) };
+                let run = unsafe { list.run(colouring.tasks[colouring.task(colour, task)].clone()) };
                 let mut yes = 0;
                 for contact in run {
                     yes += u64::from(work(contact));

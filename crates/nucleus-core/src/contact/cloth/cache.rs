@@ -5,9 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::batches::{ContactList, ListUpdate};
-use crate::contact::cloth::colouring::Place;
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::query::FoundContacts;
+use crate::contact::colouring::Place;
 use crate::contact::response::Restitution;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use crate::contact::cloth::batches::ListUpdate;
 use crate::contact::cloth::cache::ContactCache;
-use crate::contact::cloth::colouring::Place;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
 use crate::contact::cloth::group_bounds::GroupBounds;
@@ -13,6 +12,7 @@ use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::query::FoundContacts;
 use crate::contact::cloth::search::{RefreshKind, SearchInput};
 use crate::contact::cloth::untangling::Untangling;
+use crate::contact::colouring::Place;
 use crate::contact::material::ContactMaterial;
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
@@ -177,7 +177,7 @@ pub struct SearchBuffers<R> {
 }
 
 /// Groups in a task.
-pub(super) const GROUPS_PER_TASK: usize = 64;
+pub(super) const GROUPS_PER_TASK: usize = 16;
 
 impl<R> Default for SearchBuffers<R> {
     fn default() -> Self {

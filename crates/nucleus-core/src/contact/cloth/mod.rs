@@ -8,7 +8,7 @@
 //! | the trajectory and radius that bound each point over a candidate interval | [`motion_bounds`] |
 //! | broad phase: predicts motion bounds, and searches where points violate theirs | [`broad_phase`] |
 //! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`], [`new_elements`], [`swept_points`] |
-//! | the contacts by kind, in batches that threads share | [`cache`], [`batches`], [`colouring`] |
+//! | the contacts by kind, in batches that threads share | [`cache`], [`batches`] |
 //! | one contact | [`contact`] |
 //! | a fast lower bound on its gap | [`local_anchors`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
@@ -20,7 +20,6 @@ pub mod batches;
 pub mod broad_phase;
 pub mod cache;
 mod certify;
-mod colouring;
 pub mod contact;
 pub mod contacts;
 mod element_bounds;

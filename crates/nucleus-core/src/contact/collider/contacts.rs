@@ -140,60 +140,35 @@ impl<R: Real> ColliderContacts<R> {
             if interval[1] > interval[0] { (time - interval[0]) / (interval[1] - interval[0]) } else { 0.0 }
         };
         let window = window.map(|time| (R::from_f64(share(time)), bounds.travel_at(time)));
-        let all = |pairs: usize| 0..pairs as u32;
-        // Two tasks of about the same length, with separate lists.
-        let ActiveSet {
-            point_face: of_points,
-            edge_edge: of_edges,
-            face_point: of_faces,
-            runs,
-            uncertified,
-            ..
-        } = active;
-        let [points_uncertified, edges_uncertified, faces_uncertified] = uncertified;
         let thickness = R::from_f64(material.thickness);
         let range = [material.adhesion_range, CERTIFIED_GAP].map(|range| thickness * R::from_f64(range));
-        let selection = Selection { bounds, window, range, growth, depenetration };
-        let points = Mutex::new((&mut *point_face, [&mut *of_points, points_uncertified]));
-        let edges = (edge_edge, [of_edges, edges_uncertified]);
-        let elements = Mutex::new((edges, (face_point, [of_faces, faces_uncertified])));
+        let selection = Selection { bounds, window, range, growth, depenetration, blocks };
+        // Two tasks of about the same length, with separate lists.
+        let points = Mutex::new((point_face, &mut active.points));
+        let elements = Mutex::new((edge_edge, &mut active.edges, face_point, &mut active.faces));
+        let all = |contacts: usize| 0..contacts as u32;
         pool.parallel_for(2, |task| match task {
             0 => {
                 let Ok(mut lists) = points.lock() else { return };
-                let (contacts, found) = &mut *lists;
-                selection.select(contacts, by_point.iter().map(|&key| key as u32), found);
+                let (contacts, active) = &mut *lists;
+                selection.select(contacts, by_point.iter().map(|&key| key as u32), active);
             }
             _ => {
                 let Ok(mut lists) = elements.lock() else { return };
-                let ((edges, of_edges), (faces, of_faces)) = &mut *lists;
+                let (edges, active_edges, faces, active_faces) = &mut *lists;
                 let (all_edges, all_faces) = (all(edges.len()), all(faces.len()));
-                selection.select(edges, all_edges, of_edges);
-                selection.select(faces, all_faces, of_faces);
+                selection.select(edges, all_edges, active_edges);
+                selection.select(faces, all_faces, active_faces);
             }
         });
-        let place = |end: u32| {
-            of_points.partition_point(|&contact| point_face[contact as usize].points[0] < end) as u32
-        };
-        let run = |block: usize| place(blocks.range(block).start)..place(blocks.range(block).end);
-        runs.clear();
-        runs.extend((0..blocks.len()).map(run));
-        self.copy_planes();
     }
 
     /// Copies the planes of all active contacts to their columns.
     pub(super) fn copy_planes(&mut self) {
         let Self { point_face, edge_edge, face_point, active, .. } = self;
-        let ActiveSet { point_planes, first_fours, edge_planes, face_planes, .. } = active;
-        point_planes.clear();
-        first_fours.clear();
-        for run in &active.runs {
-            first_fours.push(point_planes.fours_mut().len() as u32);
-            point_planes.add_run(point_face, &active.point_face[run.start as usize..run.end as usize]);
-        }
-        edge_planes.clear();
-        edge_planes.add_run(edge_edge, &active.edge_edge);
-        face_planes.clear();
-        face_planes.add_run(face_point, &active.face_point);
+        active.points.copy_planes(point_face);
+        active.edges.copy_planes(edge_edge);
+        active.faces.copy_planes(face_point);
     }
 }
 
@@ -208,11 +183,10 @@ pub fn certify<R: Real>(
     pool: &ThreadPool,
 ) -> [u64; 2] {
     let ColliderContacts { point_face, edge_edge, face_point, active, .. } = list;
-    let [points, edges, faces] = &active.uncertified;
     let certification = Certification::default();
-    certification.certify_all(point_face, points, step, pool);
-    certification.certify_all(edge_edge, edges, step, pool);
-    certification.certify_all(face_point, faces, step, pool);
+    certification.certify_all(point_face, &active.points.uncertified, step, pool);
+    certification.certify_all(edge_edge, &active.edges.uncertified, step, pool);
+    certification.certify_all(face_point, &active.faces.uncertified, step, pool);
     let Certification { counts, has_new_plane, unproven } = certification;
     list.unproven.clear();
     list.unproven.extend(unproven.into_inner().unwrap_or_default());
@@ -279,9 +253,9 @@ pub fn revert_to_start<R: Real>(
     freeze: &mut impl FnMut(u32),
 ) {
     let ColliderContacts { point_face, edge_edge, face_point, active, .. } = list;
-    revert_all(point_face, &active.point_face, step, counters, freeze);
-    revert_all(edge_edge, &active.edge_edge, step, counters, freeze);
-    revert_all(face_point, &active.face_point, step, counters, freeze);
+    revert_all(point_face, &active.points.indices, step, counters, freeze);
+    revert_all(edge_edge, &active.edges.indices, step, counters, freeze);
+    revert_all(face_point, &active.faces.indices, step, counters, freeze);
     list.copy_planes();
 }
 
@@ -292,9 +266,9 @@ pub fn for_unproven_points<R: Real>(
     mark: &mut impl FnMut(u32),
 ) {
     let ColliderContacts { point_face, edge_edge, face_point, active, .. } = list;
-    for_unproven_points_of(point_face, &active.point_face, step, mark);
-    for_unproven_points_of(edge_edge, &active.edge_edge, step, mark);
-    for_unproven_points_of(face_point, &active.face_point, step, mark);
+    for_unproven_points_of(point_face, &active.points.indices, step, mark);
+    for_unproven_points_of(edge_edge, &active.edges.indices, step, mark);
+    for_unproven_points_of(face_point, &active.faces.indices, step, mark);
     list.copy_planes();
 }
 

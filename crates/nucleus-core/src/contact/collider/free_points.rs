@@ -115,12 +115,12 @@ fn for_contacts_of_points<R: Real>(
     points: &[u32],
     mut work: impl FnMut(&mut ColliderContacts<R>, &[u32]),
 ) {
-    let active = std::mem::take(&mut list.active.point_face);
+    let active = std::mem::take(&mut list.active.points.indices);
     for &point in points {
         let first = active.partition_point(|&at| list.point_face[at as usize].points[0] < point);
         let own = active[first..].iter().take_while(|&&at| list.point_face[at as usize].points[0] == point);
         let count = own.count();
         work(list, &active[first..first + count]);
     }
-    list.active.point_face = active;
+    list.active.points.indices = active;
 }

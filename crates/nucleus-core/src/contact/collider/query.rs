@@ -52,7 +52,7 @@ struct GroupBoxes<'a> {
 const GROUP_SIZE: usize = 2;
 
 /// Groups in a task.
-const GROUPS_PER_TASK: usize = 64;
+const GROUPS_PER_TASK: usize = 32;
 
 impl<R: Real> ColliderQuery<'_, R> {
     /// Replaces the contacts of all elements with a new bound.

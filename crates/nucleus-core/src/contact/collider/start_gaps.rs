@@ -96,7 +96,7 @@ pub fn release_cleared_points<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usi
         let step = args.of(state, &collider_states[list.collider]);
         let thickness = R::from_f64(material.thickness);
         range = if range < thickness { thickness } else { range };
-        for contact in list.active.point_face.iter().map(|&at| &list.point_face[at as usize]) {
+        for contact in list.active.points.indices.iter().map(|&at| &list.point_face[at as usize]) {
             let lowest = &mut kept.lowest[contact.points[0] as usize];
             *lowest = least(*lowest, contact.gap_at_start(&step));
         }

@@ -1,6 +1,8 @@
 //! One Gauss-Seidel sweep over the active contacts of a cloth and a collider.
 
-use crate::contact::collider::active_set::ActiveSet;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::contact::collider::active_set::ActiveContacts;
 use crate::contact::collider::contact::{ColliderContact, Outcome};
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::plane_columns::FourPlanes;
@@ -23,36 +25,41 @@ pub fn resolve<R: Real>(
 ) {
     resolve_points(list, step, pool, counters);
     let ColliderContacts { edge_edge, face_point, active, .. } = list;
-    let ActiveSet { edge_planes, face_planes, .. } = active;
-    let of_edges = resolve_all(edge_edge, &active.edge_edge, edge_planes.fours_mut(), step, counters);
-    let of_faces = resolve_all(face_point, &active.face_point, face_planes.fours_mut(), step, counters);
+    let of_edges = resolve_elements(edge_edge, &mut active.edges, step, pool, counters);
+    let of_faces = resolve_elements(face_point, &mut active.faces, step, pool, counters);
     if of_edges || of_faces {
         resolve_points(list, step, pool, counters);
     }
 }
 
-/// Sweeps contacts of edges or faces, one after the other. Returns whether any moved anything.
-fn resolve_all<R: Real, const N: usize, const M: usize>(
+/// Sweeps contacts of edges or faces, task by task. Returns whether any moved anything.
+fn resolve_elements<R: Real, const N: usize, const M: usize>(
     contacts: &mut [ColliderContact<R, N, M>],
-    active: &[u32],
-    planes: &mut [FourPlanes<R, N>],
+    active: &mut ActiveContacts<R, N>,
     step: &ColliderStep<'_, R>,
+    pool: &ThreadPool,
     counters: &ContactCounters,
 ) -> bool {
-    let mut any = false;
-    for (indices, planes) in active.chunks(4).zip(planes) {
-        let below = planes.below(step.active_gap(), step.shares[1], |point| step.row(point));
-        if below == 0 {
-            continue;
+    let any = AtomicBool::new(false);
+    active.for_tasks(contacts, pool, |contacts, run, planes| {
+        let mut any_here = false;
+        for (indices, planes) in run.chunks(4).zip(planes) {
+            let below = planes.below(step.active_gap(), step.shares[1], |point| step.row(point));
+            if below == 0 {
+                continue;
+            }
+            // Those behind the first may come below their thickness by its push.
+            for (lane, &index) in indices.iter().enumerate().skip(below.trailing_zeros() as usize) {
+                // SAFETY: a contact belongs to one task.
+                #[allow(unsafe_code)]
+                let [contact] = (unsafe { contacts.run(index..index + 1) }) else { continue };
+                any_here |= contact.resolve(step).count(counters);
+                planes.set(lane, contact);
+            }
         }
-        // Those behind the first may come below their thickness by its push.
-        for (lane, &contact) in indices.iter().enumerate().skip(below.trailing_zeros() as usize) {
-            let contact = &mut contacts[contact as usize];
-            any |= contact.resolve(step).count(counters);
-            planes.set(lane, contact);
-        }
-    }
-    any
+        any.fetch_or(any_here, Ordering::Relaxed);
+    });
+    any.into_inner()
 }
 
 /// Sweeps point-face contacts, block by block.
@@ -63,14 +70,7 @@ fn resolve_points<R: Real>(
     counters: &ContactCounters,
 ) {
     let ColliderContacts { point_face, active, .. } = list;
-    let ActiveSet { point_face: active, runs, point_planes, first_fours, .. } = active;
-    let (pairs, planes) = (DisjointSlice::new(point_face), DisjointSlice::new(point_planes.fours_mut()));
-    pool.parallel_for(runs.len(), |block| {
-        let run = &active[runs[block].start as usize..runs[block].end as usize];
-        let fours = first_fours[block]..first_fours[block] + run.len().div_ceil(4) as u32;
-        // SAFETY: the runs of two blocks share no contact, no point, and no four.
-        #[allow(unsafe_code)]
-        let planes = unsafe { planes.run(fours) };
+    active.points.for_tasks(point_face, pool, |pairs, run, planes| {
         resolve_block(pairs, run, planes, step, counters);
     });
 }
@@ -109,13 +109,14 @@ fn resolve_block<R: Real>(
 /// Applies adhesion between every point and its nearest face.
 pub fn adhere<R: Real>(list: &mut ColliderContacts<R>, step: &ColliderStep<'_, R>, pool: &ThreadPool) {
     let ColliderContacts { point_face, active, .. } = list;
-    let pairs = &*point_face;
-    pool.parallel_for(active.runs.len(), |block| {
-        let run = &active.point_face[active.runs[block].start as usize..active.runs[block].end as usize];
-        for of_point in run.chunk_by(|&a, &b| pairs[a as usize].points == pairs[b as usize].points) {
-            let gaps = of_point.iter().map(|&contact| (pairs[contact as usize].gap(step), contact));
+    active.points.for_tasks(point_face, pool, |pairs, run, _| {
+        // SAFETY: the contacts of a point belong to the task of its block.
+        #[allow(unsafe_code)]
+        let contact = |index: u32| unsafe { pairs.get(index) };
+        for of_point in run.chunk_by(|&a, &b| contact(a).points == contact(b).points) {
+            let gaps = of_point.iter().map(|&index| (contact(index).gap(step), index));
             let nearest = gaps.reduce(|least, next| if next.0 < least.0 { next } else { least });
-            nearest.into_iter().for_each(|(_, contact)| pairs[contact as usize].adhere(step));
+            nearest.into_iter().for_each(|(_, index)| contact(index).adhere(step));
         }
     });
 }

@@ -104,9 +104,9 @@ impl Colouring {
         }
     }
 
-    /// The run of a task of a colour.
-    pub fn task(&self, colour: &Range<u32>, task: usize) -> Range<u32> {
-        self.tasks[self.sorted[colour.start as usize + task].1 as usize].clone()
+    /// The index of a task of a colour.
+    pub fn task(&self, colour: &Range<u32>, task: usize) -> usize {
+        self.sorted[colour.start as usize + task].1 as usize
     }
 }
 
@@ -137,7 +137,7 @@ mod tests {
             for colour in &colouring.colours {
                 let mut taken = std::collections::HashMap::new();
                 for task in 0..colour.len() {
-                    let run = colouring.task(colour, task);
+                    let run = &colouring.tasks[colouring.task(colour, task)];
                     for &(_, contact) in &order[run.start as usize..run.end as usize] {
                         places += 1;
                         for block in contacts[contact as usize] {
