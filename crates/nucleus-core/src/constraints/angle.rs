@@ -13,6 +13,7 @@
 use nalgebra::Vector3;
 
 use crate::input::frame::Bending;
+use crate::math::kernel::{self, Kernel};
 use crate::math::{Lanes, Real, Row4};
 use crate::model::rows::Row;
 use crate::model::surface::Surface;
@@ -20,6 +21,7 @@ use crate::parallel::disjoint::DisjointSlice;
 
 use super::bend::BendStrength;
 use super::hinge::{HingeGroup, HingeRow, MIN_COSINE};
+use super::side_by_side::{group_starts, load, store};
 use super::strength_map::{StrengthGroup, StrengthMap};
 
 /// Vectors that give four hinges their sign, in addition to the hinges.
@@ -52,6 +54,7 @@ impl<R: Real, const N: usize> AngleRow<R, N> {
 impl<R: Real, const N: usize> Row for AngleRow<R, N> {
     type Group = AngleGroup<R>;
     const POINTS: usize = N;
+    const GROUPS: usize = HingeRow::<R, N>::GROUPS;
 
     fn point(&self, k: usize) -> u32 {
         self.points[k]
@@ -126,24 +129,24 @@ impl<R: Real> AngleGroup<R> {
             }
         }
     }
+}
 
-    /// The vectors of the edge and to the far sides of each hinge, in lanes.
-    #[inline(always)]
-    fn spans<const N: usize>(&self, x: &[[R::Lanes; 3]; N]) -> [[R::Lanes; 3]; 3] {
-        let anchored = self.anchored.map(|vector| vector.map(R::Lanes::from_array));
-        let half = R::Lanes::splat(R::from_f64(0.5));
-        let far = |side: &[usize], axis: usize| match side {
-            [one] => x[*one][axis],
-            [one, other] => (x[*one][axis] + x[*other][axis]) * half,
-            _ => x[0][axis],
-        };
-        let [near, other] = far_sides::<N>();
-        [
-            [0, 1, 2].map(|axis| anchored[0][axis] + (x[1][axis] - x[0][axis])),
-            [0, 1, 2].map(|axis| anchored[1][axis] + (far(near, axis) - x[0][axis])),
-            [0, 1, 2].map(|axis| anchored[2][axis] + (far(other, axis) - x[0][axis])),
-        ]
-    }
+/// The vectors of the edge and to the far sides of each hinge, in lanes.
+#[inline(always)]
+fn spans_of<R: Real, L: Lanes<R>, const N: usize>(angles: &[AngleGroup<R>], x: &[[L; 4]; N]) -> [[L; 3]; 3] {
+    let anchored = |vector: usize, axis: usize| L::of_groups(|k| angles[k].anchored[vector][axis]);
+    let half = L::splat(R::from_f64(0.5));
+    let far = |side: &[usize], axis: usize| match side {
+        [one] => x[*one][axis],
+        [one, other] => (x[*one][axis] + x[*other][axis]) * half,
+        _ => x[0][axis],
+    };
+    let [near, other] = far_sides::<N>();
+    [
+        [0, 1, 2].map(|axis| anchored(0, axis) + (x[1][axis] - x[0][axis])),
+        [0, 1, 2].map(|axis| anchored(1, axis) + (far(near, axis) - x[0][axis])),
+        [0, 1, 2].map(|axis| anchored(2, axis) + (far(other, axis) - x[0][axis])),
+    ]
 }
 
 /// The vectors of a hinge's edge and to its far sides, from the positions of its points.
@@ -155,7 +158,7 @@ pub fn spans<const N: usize>(x: [[f64; 3]; N]) -> [[f64; 3]; 3] {
     [from_first(&[1]), from_first(near), from_first(far)]
 }
 
-/// The chord of four hinges with its sign, the direction of their correction, and their longest chord.
+/// The chord of hinges with its sign, the direction of their correction, and their longest chord.
 struct Measured<L> {
     chord: L,
     direction: [L; 3],
@@ -175,93 +178,116 @@ fn dot<L: Copy + std::ops::Mul<Output = L> + std::ops::Add<Output = L>>(a: [L; 3
 /// Share of the longest chord below which the direction of a hinge turns from c to the bisector.
 const NEAR_FLAT: f64 = 0.02;
 
+/// Measures the hinges of groups side by side; `x` are the columns of their points.
 #[inline(always)]
-fn measure<R: Real, const N: usize>(
-    hinge: &HingeGroup<R, N>,
-    angle: &AngleGroup<R>,
-    x: &[[R::Lanes; 3]; N],
-) -> Measured<R::Lanes> {
-    let splat = |value: f64| R::Lanes::splat(R::from_f64(value));
-    let (zero, one, tiny) = (splat(0.0), splat(1.0), R::Lanes::splat(R::MIN_DENOMINATOR));
-    let mut c = hinge.anchored.map(R::Lanes::from_array);
-    for k in 0..N {
-        let weight = R::Lanes::from_array(hinge.weights[k]);
-        (0..3).for_each(|axis| c[axis] = c[axis] + weight * x[k][axis]);
+fn measure<R: Real, L: Lanes<R>, const N: usize>(
+    hinges: &[HingeGroup<R, N>],
+    angles: &[AngleGroup<R>],
+    x: &[[L; 4]; N],
+) -> Measured<L> {
+    let splat = |value: f64| L::splat(R::from_f64(value));
+    let (zero, one, tiny) = (splat(0.0), splat(1.0), L::splat(R::MIN_DENOMINATOR));
+    let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|k| hinges[k].anchored[axis]));
+    for (k, x) in x.iter().enumerate() {
+        let weight = L::of_groups(|group| hinges[group].weights[k]);
+        (0..3).for_each(|axis| c[axis] = c[axis] + weight * x[axis]);
     }
-    let [edge, left, right] = angle.spans(x);
+    let [edge, left, right] = spans_of(angles, x);
     let normals = [cross(edge, left), cross(right, edge)].map(|normal| {
         let length = dot(normal, normal).sqrt() + tiny;
         normal.map(|x| x / length)
     });
-    let n: [R::Lanes; 3] = std::array::from_fn(|axis| normals[0][axis] + normals[1][axis]);
+    let n: [L; 3] = std::array::from_fn(|axis| normals[0][axis] + normals[1][axis]);
     let length = dot(c, c).sqrt();
     let sign = dot(c, n).choose_by_sign(one, zero - one);
-    let fold = R::Lanes::from_array(hinge.inverse_square_max);
+    let fold = L::of_groups(|k| hinges[k].inverse_square_max);
     // The twist of a quad has no fold: its chord is measured by its own rest.
     let longest = (fold - tiny).choose_by_sign(one / (fold.most(tiny)).sqrt(), length + tiny);
     let flat = longest * splat(NEAR_FLAT);
-    let m: [R::Lanes; 3] = std::array::from_fn(|axis| c[axis] * sign + n[axis] * flat);
+    let m: [L; 3] = std::array::from_fn(|axis| c[axis] * sign + n[axis] * flat);
     let size = dot(m, m).sqrt() + tiny;
     let direction = m.map(|x| x / size);
-    let flipped = R::Lanes::from_array(angle.flipped);
+    let flipped = L::of_groups(|k| angles[k].flipped);
     let past = flipped * flipped;
     let chord = (one - past) * (sign * length) + flipped * (longest + longest - length);
     Measured { chord, direction, longest }
 }
 
-/// Four hinges, their angles, and the vertex maps of their angles if there are any.
+/// Hinges, their angles, and the vertex map of their angles, which is empty where there is none.
 pub type MappedAngles<'a, R, const N: usize> =
-    (&'a HingeGroup<R, N>, &'a AngleGroup<R>, Option<&'a StrengthGroup<R>>);
+    (&'a [HingeGroup<R, N>], &'a [AngleGroup<R>], &'a [StrengthGroup<R>]);
 
-/// Sweeps the hinges of `groups` once, each group with its angles and its map.
+/// Sweeps hinges once, in order or backward, with their angles and their strength map.
 ///
 /// # Safety
-/// The rows of `groups` share no point within a group, and no other task of the loop touches their points.
+/// The groups come in twos whose rows share no point, and no other task of the loop touches their points.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real, M: StrengthMap<R>, const N: usize>(
+pub unsafe fn relax<R: Real, P: StrengthMap<R>, const N: usize>(
     points: DisjointSlice<'_, Row4<R>>,
-    groups: impl Iterator<Item = (MappedAngles<'a, R, N>, M)>,
-    strength: &BendStrength<R>,
-    angles: &AngleStrength<R>,
+    lists: MappedAngles<'_, R, N>,
+    map: P,
+    backward: bool,
+    strength: (&BendStrength<R>, &AngleStrength<R>),
 ) {
-    let splat = R::Lanes::splat;
-    let (share, compliance) = (splat(strength.share), splat(strength.compliance));
-    let (zero, one, tiny) = (splat(R::ZERO), splat(R::ONE), splat(R::MIN_DENOMINATOR));
-    let least = splat(R::from_f64(MIN_COSINE * MIN_COSINE));
-    let (scale, dropoff) = (splat(angles.scale), splat(angles.dropoff));
-    for ((hinge, angle, angle_map), map) in groups {
-        // SAFETY: the caller's promise.
-        let rows = hinge.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
-        let columns = rows.map(R::Lanes::transpose);
-        let x = columns.map(|[x, y, z, _]| [x, y, z]);
-        let Measured { chord, direction, longest } = measure(hinge, angle, &x);
-        let mut mobility = zero;
-        for k in 0..N {
-            let weight = R::Lanes::from_array(hinge.weights[k]);
-            mobility = mobility + columns[k][3] * weight * weight;
-        }
-        let error = chord - R::Lanes::from_array(angle.rest) * scale;
-        let size = error.most(zero - error);
-        let bent = (size / (longest + tiny)).least(one);
-        let dropoff = match angle_map {
-            Some(map) => (dropoff * R::Lanes::from_array(map.above)).least(one),
-            None => dropoff,
-        };
-        let grown = (one - dropoff) + dropoff * bent;
-        // cos²(θ/2), within bounds: the moment grows with the angle.
-        let cosine = one - chord * chord * R::Lanes::from_array(hinge.inverse_square_max);
-        let cosine = (cosine - least).choose_by_sign(cosine, least);
-        let (share, compliance) = map.scale(error, share * grown, compliance / (grown + tiny));
-        let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
-        let push = direction.map(|x| x * lambda);
-        for k in 0..N {
-            let weight = R::Lanes::from_array(hinge.weights[k]);
-            let moves = R::Lanes::transpose([weight * push[0], weight * push[1], weight * push[2], zero]);
-            for lane in 0..4 {
-                let moved = rows[k][lane] - rows[k][lane].splat_last() * moves[lane];
+    // SAFETY: the caller's promise.
+    unsafe { kernel::run(AngleSweep { points, lists, map, backward, strength }) };
+}
+
+/// A sweep over hinges with angles; see [`relax`].
+pub(super) struct AngleSweep<'a, R, P, const N: usize> {
+    pub(super) points: DisjointSlice<'a, Row4<R>>,
+    pub(super) lists: MappedAngles<'a, R, N>,
+    pub(super) map: P,
+    pub(super) backward: bool,
+    pub(super) strength: (&'a BendStrength<R>, &'a AngleStrength<R>),
+}
+
+#[allow(unsafe_code)]
+impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for AngleSweep<'_, R, P, N> {
+    /// # Safety
+    /// See [`relax`].
+    #[inline(always)]
+    unsafe fn run<L: Lanes<R>>(self) {
+        let Self { points, lists: (hinges, angles, angle_maps), map, backward, strength } = self;
+        let (strength, reading) = strength;
+        let (share, compliance) = (L::splat(strength.share), L::splat(strength.compliance));
+        let (zero, one, tiny) = (L::splat(R::ZERO), L::splat(R::ONE), L::splat(R::MIN_DENOMINATOR));
+        let least = L::splat(R::from_f64(MIN_COSINE * MIN_COSINE));
+        let (scale, dropoff) = (L::splat(reading.scale), L::splat(reading.dropoff));
+        for at in group_starts::<R, L>(hinges.len(), backward) {
+            let (hinges, angles) = (&hinges[at..at + L::GROUPS], &angles[at..at + L::GROUPS]);
+            let weight = |k: usize| L::of_groups(|group| hinges[group].weights[k]);
+            // SAFETY: the caller's promise.
+            let x: [[L; 4]; N] =
+                std::array::from_fn(|k| unsafe { load(points, |group| hinges[group].points[k]) });
+            let Measured { chord, direction, longest } = measure(hinges, angles, &x);
+            let mut mobility = zero;
+            for (k, x) in x.iter().enumerate() {
+                let weight = weight(k);
+                mobility = mobility + x[3] * weight * weight;
+            }
+            let error = chord - L::of_groups(|k| angles[k].rest) * scale;
+            let size = error.most(zero - error);
+            let bent = (size / (longest + tiny)).least(one);
+            let dropoff = match angle_maps {
+                [] => dropoff,
+                maps => (dropoff * L::of_groups(|k| maps[at + k].above)).least(one),
+            };
+            let grown = (one - dropoff) + dropoff * bent;
+            // cos²(θ/2), within bounds: the moment grows with the angle.
+            let cosine = one - chord * chord * L::of_groups(|k| hinges[k].inverse_square_max);
+            let cosine = (cosine - least).choose_by_sign(cosine, least);
+            let (share, compliance) = map.scale(at, error, share * grown, compliance / (grown + tiny));
+            let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
+            let push = direction.map(|x| x * lambda);
+            for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
+                let [mx, my, mz] = push.map(|push| weight(k) * push);
                 // SAFETY: the caller's promise.
-                unsafe { points.set(hinge.points[k][lane], Row4(moved.to_array())) };
+                unsafe {
+                    let moved = [px - w * mx, py - w * my, pz - w * mz, w];
+                    store(points, |group| hinges[group].points[k], moved);
+                }
             }
         }
     }
@@ -309,12 +335,11 @@ impl<R: Real> AngleMemory<R> {
         map: Option<&StrengthGroup<R>>,
         displacement: &[Row4<R>],
     ) {
-        let x = hinge.points.map(|ends| {
-            let [x, y, z, _] = R::Lanes::transpose(ends.map(|point| displacement[point as usize].lanes()));
-            [x, y, z]
-        });
+        let x = hinge
+            .points
+            .map(|ends| R::Lanes::transpose(ends.map(|point| displacement[point as usize].lanes())));
         let unflipped = AngleGroup { flipped: [R::ZERO; 4], ..*angle };
-        let now = measure(hinge, &unflipped, &x);
+        let now = measure(std::slice::from_ref(hinge), &[unflipped], &x);
         let (chord, longest) = (now.chord.to_array(), now.longest.to_array());
         for lane in 0..4 {
             if hinge.inverse_square_max[lane] == R::ZERO {

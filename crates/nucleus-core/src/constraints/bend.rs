@@ -6,10 +6,12 @@
 //! bent at rest keeps the length of its vector. Far from flat a hinge is stiffer along c, so that its moment grows with
 //! the angle.
 
+use crate::math::kernel::{self, Kernel};
 use crate::math::{Lanes, Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::hinge::{HingeGroup, MIN_COSINE};
+use super::side_by_side::{group_starts, load, store};
 use super::strength_map::StrengthMap;
 
 /// The strength of a sweep over hinges.
@@ -21,49 +23,170 @@ pub struct BendStrength<R> {
     pub compliance: R,
 }
 
-/// Sweeps the hinges of `groups` once, each group with its strength map.
+/// Sweeps hinges once, in order or backward, with their strength map.
 ///
 /// # Safety
-/// The rows of a group share no point, and no other task of the loop touches the points of `groups`.
+/// `groups` come in twos whose rows share no point, and no other task of the loop touches their points.
 #[allow(unsafe_code)]
 #[inline]
-pub unsafe fn relax<'a, R: Real, P: StrengthMap<R>, const N: usize>(
+pub unsafe fn relax<R: Real, P: StrengthMap<R>, const N: usize>(
     points: DisjointSlice<'_, Row4<R>>,
-    groups: impl Iterator<Item = (&'a HingeGroup<R, N>, P)>,
+    groups: &[HingeGroup<R, N>],
+    map: P,
+    backward: bool,
     strength: &BendStrength<R>,
 ) {
-    let (share, compliance) = (R::Lanes::splat(strength.share), R::Lanes::splat(strength.compliance));
-    let (zero, one, tiny) =
-        (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE), R::Lanes::splat(R::MIN_DENOMINATOR));
-    let least = R::Lanes::splat(R::from_f64(MIN_COSINE * MIN_COSINE));
-    for (group, map) in groups {
-        // SAFETY: the caller's promise.
-        let x = group.points.map(|ends| ends.map(|point| unsafe { points.get(point) }.lanes()));
-        let weights = group.weights.map(R::Lanes::from_array);
-        let mut c = group.anchored.map(R::Lanes::from_array);
-        let mut mobility = zero;
-        for k in 0..N {
-            let [px, py, pz, w] = R::Lanes::transpose(x[k]);
-            let weight = weights[k];
-            c = [c[0] + weight * px, c[1] + weight * py, c[2] + weight * pz];
-            mobility = mobility + w * weight * weight;
-        }
-        let square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-        let length = square.sqrt();
-        // cos²(θ/2), bounded from below.
-        let cosine = one - square * R::Lanes::from_array(group.inverse_square_max);
-        let cosine = (cosine - least).choose_by_sign(cosine, least);
-        let bent = one - R::Lanes::from_array(group.rest) / (length + tiny);
-        let (share, compliance) = map.scale(bent, share, compliance);
-        let lambda = share * bent / (mobility + compliance * cosine.sqrt() + tiny);
-        let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
-        for k in 0..N {
-            let weight = weights[k];
-            let moves = R::Lanes::transpose([weight * push[0], weight * push[1], weight * push[2], zero]);
-            for lane in 0..4 {
-                let moved = x[k][lane] - x[k][lane].splat_last() * moves[lane];
+    // SAFETY: the caller's promise.
+    unsafe { kernel::run(HingeSweep { points, groups, map, backward, strength }) };
+}
+
+struct HingeSweep<'a, R, P, const N: usize> {
+    points: DisjointSlice<'a, Row4<R>>,
+    groups: &'a [HingeGroup<R, N>],
+    map: P,
+    backward: bool,
+    strength: &'a BendStrength<R>,
+}
+
+#[allow(unsafe_code)]
+impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R, P, N> {
+    /// # Safety
+    /// See [`relax`].
+    #[inline(always)]
+    unsafe fn run<L: Lanes<R>>(self) {
+        let Self { points, groups, map, backward, strength } = self;
+        let (share, compliance) = (L::splat(strength.share), L::splat(strength.compliance));
+        let (zero, one, tiny) = (L::splat(R::ZERO), L::splat(R::ONE), L::splat(R::MIN_DENOMINATOR));
+        let least = L::splat(R::from_f64(MIN_COSINE * MIN_COSINE));
+        for at in group_starts::<R, L>(groups.len(), backward) {
+            let groups = &groups[at..at + L::GROUPS];
+            let weight = |k: usize| L::of_groups(|group| groups[group].weights[k]);
+            // SAFETY: the caller's promise.
+            let x: [[L; 4]; N] =
+                std::array::from_fn(|k| unsafe { load(points, |group| groups[group].points[k]) });
+            let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|group| groups[group].anchored[axis]));
+            let mut mobility = zero;
+            for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
+                let weight = weight(k);
+                c = [c[0] + weight * px, c[1] + weight * py, c[2] + weight * pz];
+                mobility = mobility + w * weight * weight;
+            }
+            let square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+            let length = square.sqrt();
+            // cos²(θ/2), bounded from below.
+            let cosine = one - square * L::of_groups(|group| groups[group].inverse_square_max);
+            let cosine = (cosine - least).choose_by_sign(cosine, least);
+            let bent = one - L::of_groups(|group| groups[group].rest) / (length + tiny);
+            let (share, compliance) = map.scale(at, bent, share, compliance);
+            let lambda = share * bent / (mobility + compliance * cosine.sqrt() + tiny);
+            let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
+            for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
+                let [mx, my, mz] = push.map(|push| weight(k) * push);
                 // SAFETY: the caller's promise.
-                unsafe { points.set(group.points[k][lane], Row4(moved.to_array())) };
+                unsafe {
+                    let moved = [px - w * mx, py - w * my, pz - w * mz, w];
+                    store(points, |group| groups[group].points[k], moved);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraints::angle::{AngleGroup, AngleStrength, AngleSweep};
+    use crate::constraints::hinge::rows;
+    use crate::constraints::side_by_side::tests::agrees_in_every_width;
+    use crate::constraints::strength_map::{StrengthGroup, Uniform};
+    use crate::model::blocks::Blocks;
+    use crate::model::rows::RowList;
+    use crate::model::surface::{Faces, Surface};
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    const SIDE: u32 = 9;
+    const COUNT: usize = (SIDE * SIDE) as usize;
+    const STRENGTH: BendStrength<f32> = BendStrength { share: 0.8, compliance: 0.03 };
+    const READING: AngleStrength<f32> = AngleStrength { scale: 0.7, dropoff: 0.4 };
+
+    /// A crumpled sheet of quads, or of triangles.
+    fn sheets() -> impl Strategy<Value = Surface> {
+        let shift = proptest::array::uniform3(-0.3f64..0.3);
+        (proptest::collection::vec(shift, COUNT), any::<bool>()).prop_map(|(shifts, of_quads)| {
+            let place = |k: u32| Vector3::new(f64::from(k % SIDE), f64::from(k / SIDE), 0.0);
+            let positions = (0..SIDE * SIDE).zip(shifts).map(|(k, shift)| place(k) + Vector3::from(shift));
+            let cells = (0..SIDE - 1).flat_map(|row| (0..SIDE - 1).map(move |column| row * SIDE + column));
+            let faces = cells.flat_map(|a| match of_quads {
+                true => vec![vec![a, a + 1, a + SIDE + 1, a + SIDE]],
+                false => vec![vec![a, a + 1, a + SIDE], vec![a + 1, a + SIDE + 1, a + SIDE]],
+            });
+            let faces: Vec<Vec<u32>> = faces.collect();
+            Surface {
+                positions: positions.collect(),
+                faces: faces.iter().map(Vec::as_slice).collect::<Faces>(),
+            }
+        })
+    }
+
+    /// Displacements; every fifth point is pinned.
+    fn displacements() -> impl Strategy<Value = Vec<Row4<f32>>> {
+        proptest::collection::vec(proptest::array::uniform4(-0.5f32..0.5), COUNT).prop_map(|all| {
+            let free = all.into_iter().enumerate();
+            let free = free.map(|(k, [x, y, z, w])| Row4([x, y, z, if k % 5 == 0 { 0.0 } else { 1.5 + w }]));
+            free.chain((SIDE * SIDE..Blocks::new(0, COUNT).columns()).map(|_| Row4::ZERO)).collect()
+        })
+    }
+
+    /// A vertex map for this many groups; every third factor is zero.
+    fn map(groups: usize) -> Vec<StrengthGroup<f32>> {
+        let factor = |k: usize| if k.is_multiple_of(3) { 0.0 } else { k as f32 * 0.71 % 1.0 };
+        let four = |group: usize, from: usize| [0, 1, 2, 3].map(|lane| factor(from + 4 * group + lane));
+        (0..groups).map(|group| StrengthGroup { above: four(group, 0), below: four(group, 1) }).collect()
+    }
+
+    fn agrees<const N: usize>(
+        mut hinges: RowList<HingeGroup<f32, N>>,
+        mut angles: RowList<AngleGroup<f32>>,
+        anchors: &[[f64; 3]],
+        (start, backward): (&[Row4<f32>], bool),
+    ) -> bool {
+        hinges.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
+        for (hinge, angle) in hinges.groups().iter().zip(angles.groups_mut()) {
+            angle.anchor(hinge, anchors);
+            angle.flipped[1] = 1.0;
+        }
+        let (groups, angles, strength) = (hinges.groups(), angles.groups(), &STRENGTH);
+        let maps = map(groups.len());
+        let (map, signed) = (&maps[..], (&STRENGTH, &READING));
+        agrees_in_every_width!(start, points => HingeSweep { points, groups, map: Uniform, backward, strength })
+            && agrees_in_every_width!(start, points => HingeSweep { points, groups, map, backward, strength })
+            && agrees_in_every_width!(start, points => {
+                AngleSweep { points, lists: (groups, angles, &[]), map: Uniform, backward, strength: signed }
+            })
+            && agrees_in_every_width!(start, points => {
+                AngleSweep { points, lists: (groups, angles, map), map, backward, strength: signed }
+            })
+    }
+
+    proptest! {
+        #[test]
+        fn every_width_of_lanes_gives_the_same_bits(
+            sheet in sheets(),
+            start in displacements(),
+            backward: bool,
+        ) {
+            let (blocks, rows) = (Blocks::new(0, COUNT), rows::<f32>(&sheet, |point| point));
+            let mut anchors: Vec<[f64; 3]> = sheet.positions.iter().map(|&x| (x * 0.9).into()).collect();
+            anchors.resize(blocks.columns() as usize, [0.0; 3]);
+            let place = |row: u32| row as usize;
+            let four: Vec<_> = rows.of_four.iter().map(|row| row.angle(&sheet, place)).collect();
+            let four = (RowList::new(&rows.of_four, &blocks), RowList::new(&four, &blocks));
+            prop_assert!(agrees(four.0, four.1, &anchors, (&start, backward)));
+            if !rows.of_six.is_empty() {
+                let six: Vec<_> = rows.of_six.iter().map(|row| row.angle(&sheet, place)).collect();
+                let six = (RowList::new(&rows.of_six, &blocks), RowList::new(&six, &blocks));
+                prop_assert!(agrees(six.0, six.1, &anchors, (&start, backward)));
             }
         }
     }

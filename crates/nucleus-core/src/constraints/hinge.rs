@@ -202,6 +202,7 @@ pub fn energy_of_length(length: f64, rest: f64, inverse_square_max: f64) -> f64 
 impl<R: Real, const N: usize> Row for HingeRow<R, N> {
     type Group = HingeGroup<R, N>;
     const POINTS: usize = N;
+    const GROUPS: usize = 2;
 
     fn point(&self, k: usize) -> u32 {
         self.points[k]

@@ -33,6 +33,7 @@
 //! | vertex maps of stiffness | beside links and hinges | [`strength_map`] |
 //! | the order of rows in a sweep | all | [`sweep`](mod@sweep) |
 //! | parallel loops over rows | all | [`row_loops`] |
+//! | rows side by side in lanes | all | [`side_by_side`] |
 
 pub mod angle;
 pub mod attract;
@@ -47,6 +48,7 @@ pub mod pressure;
 pub mod projection;
 pub mod row_loops;
 pub mod shape;
+pub mod side_by_side;
 pub mod strength_map;
 pub mod stretch;
 pub mod sweep;

@@ -70,22 +70,19 @@ pub fn sweep<R: Real>(
     let sums = DisjointSlice::new(corrections);
     let jacobi = Jacobi { points, sums, first, valence: &cloth.valence };
     for_all_rows(pool, &cloth.blocks, lists.rows, |batch| {
-        let (groups, maps) = (lists.rows.batch(batch).iter(), lists.maps(batch).iter());
+        let (groups, map) = (lists.rows.batch(batch), lists.maps(batch));
+        let woven = |(weave, strength)| (RowList::batch(weave, batch), strength);
         // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
         #[allow(unsafe_code)]
         unsafe {
-            match (lists.weave, maps.len() > 0) {
-                (None, true) => jacobi.add(groups.zip(maps), strength),
-                (None, false) => jacobi.add(groups.map(|group| (group, Uniform)), strength),
+            match (lists.weave.map(woven), map.is_empty()) {
+                (None, true) => jacobi.add(groups, Uniform, strength),
+                (None, false) => jacobi.add(groups, map, strength),
                 (Some((weave, law)), true) => {
-                    let woven = groups.zip(weave.batch(batch)).zip(maps);
-                    let woven = woven.map(|((row, group), map)| (row, Woven { group, strength: law, map }));
-                    jacobi.add(woven, strength);
+                    jacobi.add(groups, Woven { groups: weave, strength: law, map: Uniform }, strength);
                 }
                 (Some((weave, law)), false) => {
-                    let woven = groups.zip(weave.batch(batch));
-                    let woven = woven.map(|(row, group)| (row, Woven { group, strength: law, map: Uniform }));
-                    jacobi.add(woven, strength);
+                    jacobi.add(groups, Woven { groups: weave, strength: law, map }, strength);
                 }
             }
         }
@@ -109,25 +106,23 @@ impl<R: Real> Jacobi<'_, R> {
     /// # Safety
     /// No other task of the loop touches the points of `groups`.
     #[allow(unsafe_code)]
-    unsafe fn add<'g, P: LinkLaw<R>>(
-        &self,
-        groups: impl Iterator<Item = (&'g LinkGroup<R>, P)>,
-        strength: &LinkStrength<R>,
-    ) {
-        let projection = LinkProjection::new(strength);
-        for (group, law) in groups {
-            let [a, b] = group.ends.map(|ends| ends.map(|end| self.points[end as usize].lanes()));
-            let push = projection.correction(group, law, [a, b]).rows();
+    unsafe fn add<P: LinkLaw<R>>(&self, groups: &[LinkGroup<R>], law: P, strength: &LinkStrength<R>) {
+        let projection = LinkProjection::<R::Lanes>::new(strength);
+        for (at, group) in groups.iter().enumerate() {
+            let rows = group.ends.map(|ends| ends.map(|end| self.points[end as usize].lanes()));
+            let [x, y, z] = projection.correction(|_| group, (law, at), rows.map(R::Lanes::transpose)).push;
+            let push = R::Lanes::transpose([x, y, z, R::Lanes::splat(R::ZERO)]);
             for lane in 0..4 {
                 let [end_a, end_b] = group.ends.map(|ends| ends[lane]);
+                let [w_a, w_b] = rows.map(|rows| rows[lane].splat_last());
                 let valence = |end: u32| self.valence[(end - self.first) as usize];
                 let damped =
                     push[lane] * R::Lanes::splat(R::from_f64(2.0) / (valence(end_a) + valence(end_b)));
                 // SAFETY: the caller's promise.
                 unsafe {
-                    let sum = self.sums.get(end_a).lanes() + a[lane].splat_last() * damped;
+                    let sum = self.sums.get(end_a).lanes() + w_a * damped;
                     self.sums.set(end_a, Row4(sum.to_array()));
-                    let sum = self.sums.get(end_b).lanes() - b[lane].splat_last() * damped;
+                    let sum = self.sums.get(end_b).lanes() - w_b * damped;
                     self.sums.set(end_b, Row4(sum.to_array()));
                 }
             }

@@ -16,11 +16,11 @@ pub struct Sides<T> {
     pub below: T,
 }
 
-/// Scales the strength of a sweep for four rows side by side.
+/// Scales the strength of a sweep for rows side by side.
 pub trait StrengthMap<R: Real>: Copy {
-    /// Share and compliance of the rows, from those of the sweep; the sign of `c` says on which side of rest each row
-    /// is.
-    fn scale(self, c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes);
+    /// Share and compliance of the rows of the groups from `at` on, from those of the sweep; the sign of `c` says on which
+    /// side of rest each row is.
+    fn scale<L: Lanes<R>>(self, at: usize, c: L, share: L, compliance: L) -> (L, L);
 }
 
 /// No map: every row has the factor 1.
@@ -29,7 +29,7 @@ pub struct Uniform;
 
 impl<R: Real> StrengthMap<R> for Uniform {
     #[inline(always)]
-    fn scale(self, _c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes) {
+    fn scale<L: Lanes<R>>(self, _at: usize, _c: L, share: L, compliance: L) -> (L, L) {
         (share, compliance)
     }
 }
@@ -43,12 +43,13 @@ pub struct StrengthGroup<R> {
     pub below: [R; 4],
 }
 
-impl<R: Real> StrengthMap<R> for &StrengthGroup<R> {
+/// One entry per group.
+impl<R: Real> StrengthMap<R> for &[StrengthGroup<R>] {
     #[inline(always)]
-    fn scale(self, c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes) {
-        let splat = R::Lanes::splat;
-        let (zero, one, tiny) = (splat(R::ZERO), splat(R::ONE), splat(R::MIN_DENOMINATOR));
-        let own = c.choose_by_sign(R::Lanes::from_array(self.above), R::Lanes::from_array(self.below));
+    fn scale<L: Lanes<R>>(self, at: usize, c: L, share: L, compliance: L) -> (L, L) {
+        let (zero, one, tiny) = (L::splat(R::ZERO), L::splat(R::ONE), L::splat(R::MIN_DENOMINATOR));
+        let above = L::of_groups(|k| self[at + k].above);
+        let own = c.choose_by_sign(above, L::of_groups(|k| self[at + k].below));
         let some = own - tiny;
         let is_soft = compliance - tiny;
         let taken = is_soft.choose_by_sign(some.choose_by_sign(one, zero), own);
@@ -73,8 +74,7 @@ impl<R: Real, const N: usize> StrengthRow<R, N> {
 impl<R: Real, const N: usize> Row for StrengthRow<R, N> {
     type Group = StrengthGroup<R>;
     const POINTS: usize = N;
-    // Like the rows of links, which are those with two points.
-    const GROUPS: usize = if N == 2 { 2 } else { 1 };
+    const GROUPS: usize = 2;
 
     fn point(&self, k: usize) -> u32 {
         self.points[k]

@@ -7,11 +7,11 @@
 use crate::constraints::angle::{AngleGroup, AngleStrength};
 use crate::constraints::hinge::HingeGroup;
 use crate::constraints::parallel::LinkLists;
-use crate::constraints::projection::{relax, relax_uniform};
+use crate::constraints::projection::relax;
 use crate::constraints::row_loops::for_interface_rows;
 use crate::constraints::strength_map::{StrengthGroup, Uniform};
-use crate::constraints::stretch::{LinkGroup, LinkStrength};
-use crate::constraints::weave::{WeaveGroup, WeaveStrength, Woven};
+use crate::constraints::stretch::LinkStrength;
+use crate::constraints::weave::Woven;
 use crate::constraints::{angle, bend, parallel};
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
@@ -129,40 +129,21 @@ impl<R: Real> Sweeper<'_, R> {
 
     #[allow(unsafe_code)]
     fn links(&self, lists: &LinkLists<'_, R>, batch: RowBatch, strength: &LinkStrength<R>) {
-        let (rows, maps) = (lists.rows.batch(batch), lists.maps(batch).iter());
+        let (rows, map, backward) = (lists.rows.batch(batch), lists.maps(batch), self.backward);
+        let woven = |(weave, strength)| (RowList::batch(weave, batch), strength);
         // SAFETY: see `Sweeper`.
         unsafe {
-            match (lists.weave, maps.len() > 0, self.backward) {
-                (Some((weave, law)), ..) => {
-                    self.woven(rows.iter(), (weave.batch(batch), law), maps, strength)
+            match (lists.weave.map(woven), map.is_empty()) {
+                (None, true) => relax::<R, _, 2>(self.points, rows, Uniform, backward, strength),
+                (None, false) => relax::<R, _, 2>(self.points, rows, map, backward, strength),
+                (Some((groups, law)), true) => {
+                    let law = Woven { groups, strength: law, map: Uniform };
+                    relax::<R, _, 2>(self.points, rows, law, backward, strength);
                 }
-                (None, false, backward) => relax_uniform::<R, 2>(self.points, rows, backward, strength),
-                (None, true, false) => relax(self.points, rows.iter().zip(maps), strength),
-                (None, true, true) => relax(self.points, rows.iter().zip(maps).rev(), strength),
-            }
-        }
-    }
-
-    /// # Safety
-    /// See [`Sweeper`].
-    #[allow(unsafe_code)]
-    unsafe fn woven(
-        &self,
-        rows: std::slice::Iter<'_, LinkGroup<R>>,
-        (weave, law): (&[WeaveGroup<R>], &WeaveStrength<R>),
-        maps: std::slice::Iter<'_, StrengthGroup<R>>,
-        strength: &LinkStrength<R>,
-    ) {
-        let rows = rows.zip(weave);
-        let plain = |(row, group)| (row, Woven { group, strength: law, map: Uniform });
-        let mapped = |((row, group), map)| (row, Woven { group, strength: law, map });
-        // SAFETY: the caller's promise.
-        unsafe {
-            match (self.backward, maps.len() > 0) {
-                (false, false) => relax(self.points, rows.map(plain), strength),
-                (true, false) => relax(self.points, rows.rev().map(plain), strength),
-                (false, true) => relax(self.points, rows.zip(maps).map(mapped), strength),
-                (true, true) => relax(self.points, rows.zip(maps).rev().map(mapped), strength),
+                (Some((groups, law)), false) => {
+                    let law = Woven { groups, strength: law, map };
+                    relax::<R, _, 2>(self.points, rows, law, backward, strength);
+                }
             }
         }
     }
@@ -175,29 +156,16 @@ impl<R: Real> Sweeper<'_, R> {
         batch: RowBatch,
         (strength, reading): (&bend::BendStrength<R>, &AngleStrength<R>),
     ) {
-        let (rows, maps) = (rows.batch(batch).iter(), maps.batch(batch).iter());
-        if !angles.batch(batch).is_empty() {
-            let angle_maps = angle_maps.batch(batch);
-            let rows = rows.zip(angles.batch(batch)).enumerate();
-            let rows = rows.map(|(k, (hinge, angle))| (hinge, angle, angle_maps.get(k)));
-            // SAFETY: see `Sweeper`.
-            unsafe {
-                match (self.backward, maps.len() > 0) {
-                    (false, false) => angle::relax(self.points, rows.map(uniform), strength, reading),
-                    (true, false) => angle::relax(self.points, rows.rev().map(uniform), strength, reading),
-                    (false, true) => angle::relax(self.points, rows.zip(maps), strength, reading),
-                    (true, true) => angle::relax(self.points, rows.zip(maps).rev(), strength, reading),
-                }
-            }
-            return;
-        }
+        let (rows, map, backward) = (rows.batch(batch), maps.batch(batch), self.backward);
+        let angles = (rows, angles.batch(batch), angle_maps.batch(batch));
+        let strengths = (strength, reading);
         // SAFETY: see `Sweeper`.
         unsafe {
-            match (self.backward, maps.len() > 0) {
-                (false, false) => bend::relax(self.points, rows.map(unmapped), strength),
-                (true, false) => bend::relax(self.points, rows.rev().map(unmapped), strength),
-                (false, true) => bend::relax(self.points, rows.zip(maps), strength),
-                (true, true) => bend::relax(self.points, rows.zip(maps).rev(), strength),
+            match (angles.1.is_empty(), map.is_empty()) {
+                (true, true) => bend::relax(self.points, rows, Uniform, backward, strength),
+                (true, false) => bend::relax(self.points, rows, map, backward, strength),
+                (false, true) => angle::relax(self.points, angles, Uniform, backward, strengths),
+                (false, false) => angle::relax(self.points, angles, map, backward, strengths),
             }
         }
     }
@@ -206,13 +174,3 @@ impl<R: Real> Sweeper<'_, R> {
 /// Hinges, their signed angles, and the vertex maps of the angles.
 type HingeLists<'a, R, const N: usize> =
     (&'a RowList<HingeGroup<R, N>>, &'a RowList<AngleGroup<R>>, &'a RowList<StrengthGroup<R>>);
-
-/// A group without a strength map.
-fn unmapped<G>(group: &G) -> (&G, Uniform) {
-    (group, Uniform)
-}
-
-/// The same for a group with its angles.
-fn uniform<G>(group: G) -> (G, Uniform) {
-    (group, Uniform)
-}

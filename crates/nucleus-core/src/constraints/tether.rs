@@ -18,8 +18,8 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
-use super::projection::relax_uniform;
-use super::strength_map::Sides;
+use super::projection::relax;
+use super::strength_map::{Sides, Uniform};
 use super::stretch::{LinkGroup, LinkRow, LinkStrength};
 
 /// The tethers of one cloth; empty where it has none.
@@ -126,7 +126,7 @@ impl<R: Real> Tethers<R> {
             // second ends are pins, which no task writes, or the padding point of this block.
             #[allow(unsafe_code)]
             unsafe {
-                relax_uniform::<R, 1>(points, groups, false, &strength);
+                relax::<R, _, 1>(points, groups, Uniform, false, &strength);
             }
         });
     }

@@ -18,7 +18,7 @@
 
 use crate::constraints::projection::{LinkLaw, LinkProjection};
 use crate::constraints::strength_map::{Sides, StrengthMap};
-use crate::constraints::stretch::{LinkGroup, LinkRow};
+use crate::constraints::stretch::LinkRow;
 use crate::math::{Lanes, Real};
 use crate::model::rows::Row;
 use crate::schedule::resistance::PhysicalStiffness;
@@ -104,11 +104,11 @@ impl<R: Real> WeaveStrength<R> {
     }
 }
 
-/// The law of woven links, with their vertex map.
+/// The law of woven links.
 #[derive(Debug, Clone, Copy)]
 pub struct Woven<'a, R, P> {
-    /// Their directions.
-    pub group: &'a WeaveGroup<R>,
+    /// Their directions, one entry per group.
+    pub groups: &'a [WeaveGroup<R>],
     /// The strength of the sweep.
     pub strength: &'a WeaveStrength<R>,
     /// Their vertex map.
@@ -117,31 +117,31 @@ pub struct Woven<'a, R, P> {
 
 impl<R: Real, P: StrengthMap<R>> StrengthMap<R> for Woven<'_, R, P> {
     #[inline(always)]
-    fn scale(self, c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes) {
-        self.map.scale(c, share, compliance)
+    fn scale<L: Lanes<R>>(self, at: usize, c: L, share: L, compliance: L) -> (L, L) {
+        self.map.scale(at, c, share, compliance)
     }
 }
 
 impl<R: Real, P: StrengthMap<R>> LinkLaw<R> for Woven<'_, R, P> {
     #[inline(always)]
-    fn multiplier(
+    fn multiplier<L: Lanes<R>>(
         self,
-        projection: &LinkProjection<R::Lanes>,
-        group: &LinkGroup<R>,
-        [length, mobility]: [R::Lanes; 2],
-    ) -> R::Lanes {
-        let splat = R::Lanes::splat;
+        at: usize,
+        projection: &LinkProjection<L>,
+        [rest, slenderness]: [L; 2],
+        [length, mobility]: [L; 2],
+    ) -> L {
+        let splat = L::splat;
         let (zero, one, tiny) = (splat(R::ZERO), splat(R::ONE), splat(R::MIN_DENOMINATOR));
         let WeaveStrength { warp, weft, shear, buckling } = self.strength;
-        let [rest, slenderness] = [group.rest_length, group.slenderness].map(R::Lanes::from_array);
         let [c, share, _] = projection.violation(length, rest);
         let rest = rest * projection.rest_scale();
-        let along = R::Lanes::from_array(self.group.warp);
+        let along = L::of_groups(|k| self.groups[at + k].warp);
         let across = one - along;
         let side = |sides: &Sides<R>| c.choose_by_sign(splat(sides.above), splat(sides.below));
         let threads = along * along * side(warp) + across * across * side(weft);
         let compliance = threads + along * across * splat(*shear);
-        let (share, compliance) = self.scale(c, share, compliance);
+        let (share, compliance) = self.scale(at, c, share, compliance);
         let elastic = share * c / ((mobility + compliance * slenderness) * length + tiny);
         // λ = -P (2 l - c) / (2 l² s + P w) solves λ = -h² N (1 + ε/2) · width at the end of the step.
         let load = splat(*buckling);

@@ -4,6 +4,8 @@
 
 #![allow(unsafe_code)]
 
+use super::real::Lanes;
+use super::register::arithmetic;
 use std::arch::x86_64::{
     __m256, _CMP_GT_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_add_ps, _mm256_blendv_ps, _mm256_castpd_ps,
     _mm256_castps_pd, _mm256_castps128_ps256, _mm256_castps256_ps128, _mm256_cmp_ps, _mm256_div_ps,
@@ -11,29 +13,14 @@ use std::arch::x86_64::{
     _mm256_mul_ps, _mm256_permute_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps,
     _mm256_unpackhi_pd, _mm256_unpackhi_ps, _mm256_unpacklo_pd, _mm256_unpacklo_ps,
 };
-use std::ops::{Add, Div, Mul, Sub};
-
-use super::real::Lanes;
 
 /// Two times four `f32`.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
 pub struct F32x8(__m256);
 
-macro_rules! arithmetic {
-    ($($operator:ident $method:ident $intrinsic:ident;)*) => {$(
-        impl $operator for F32x8 {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: the machine has AVX2.
-                Self(unsafe { $intrinsic(self.0, other.0) })
-            }
-        }
-    )*};
-}
-
 arithmetic! {
+    F32x8:
     Add add _mm256_add_ps;
     Sub sub _mm256_sub_ps;
     Mul mul _mm256_mul_ps;
@@ -43,6 +30,17 @@ arithmetic! {
 // SAFETY of every block below: the machine has AVX2, and the loads and stores go through references to four f32.
 impl Lanes<f32> for F32x8 {
     type Array = [[f32; 4]; 2];
+    const GROUPS: usize = 2;
+    #[inline(always)]
+    fn of_groups(group: impl Fn(usize) -> [f32; 4]) -> Self {
+        Self::from_array([group(0), group(1)])
+    }
+    #[inline(always)]
+    fn for_groups(self, mut each: impl FnMut(usize, [f32; 4])) {
+        let [low, high] = self.to_array();
+        each(0, low);
+        each(1, high);
+    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(unsafe { _mm256_set1_ps(x) })

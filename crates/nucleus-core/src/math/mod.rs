@@ -5,14 +5,15 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+pub mod kernel;
 mod real;
+#[cfg(target_arch = "x86_64")]
+mod register;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 mod vector;
 
-use real::Quad;
-
-pub use real::{Lanes, Real, Two};
+pub use real::{Lanes, Quad, Real, Two};
 pub use vector::{Row4, add, clamp_length, cross, dot, max, scale, sub, unit};
 
 #[cfg(target_arch = "x86_64")]

@@ -55,6 +55,12 @@ pub trait Lanes<R>:
 {
     /// The scalars in memory.
     type Array;
+    /// How many groups of four scalars they are.
+    const GROUPS: usize;
+    /// The lanes of the groups of scalars that `group` gives for 0 to [`GROUPS`](Self::GROUPS) - 1.
+    fn of_groups(group: impl Fn(usize) -> [R; 4]) -> Self;
+    /// Calls `each` with every group of scalars and its number.
+    fn for_groups(self, each: impl FnMut(usize, [R; 4]));
     /// The same scalar in all lanes.
     fn splat(x: R) -> Self;
     /// The lanes of these scalars.
@@ -123,6 +129,15 @@ impl<R: Real> Div for Quad<R> {
 
 impl<R: Real> Lanes<R> for Quad<R> {
     type Array = [R; 4];
+    const GROUPS: usize = 1;
+    #[inline(always)]
+    fn of_groups(group: impl Fn(usize) -> [R; 4]) -> Self {
+        Self(group(0))
+    }
+    #[inline(always)]
+    fn for_groups(self, mut each: impl FnMut(usize, [R; 4])) {
+        each(0, self.0);
+    }
     #[inline(always)]
     fn splat(x: R) -> Self {
         Self([x; 4])
@@ -187,6 +202,17 @@ halfwise! { Add add; Sub sub; Mul mul; Div div; }
 
 impl<R: Real, L: Lanes<R, Array = [R; 4]>> Lanes<R> for Two<L> {
     type Array = [[R; 4]; 2];
+    const GROUPS: usize = 2;
+    #[inline(always)]
+    fn of_groups(group: impl Fn(usize) -> [R; 4]) -> Self {
+        Self::from_array([group(0), group(1)])
+    }
+    #[inline(always)]
+    fn for_groups(self, mut each: impl FnMut(usize, [R; 4])) {
+        let [low, high] = self.to_array();
+        each(0, low);
+        each(1, high);
+    }
     #[inline(always)]
     fn splat(x: R) -> Self {
         Self([L::splat(x); 2])

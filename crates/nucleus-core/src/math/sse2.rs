@@ -4,34 +4,21 @@
 
 #![allow(unsafe_code)]
 
+use super::real::Lanes;
+use super::register::arithmetic;
 use std::arch::x86_64::{
     __m128, _mm_add_ps, _mm_and_ps, _mm_andnot_ps, _mm_cmpgt_ps, _mm_div_ps, _mm_loadu_ps, _mm_max_ps,
     _mm_min_ps, _mm_movehl_ps, _mm_movelh_ps, _mm_movemask_ps, _mm_mul_ps, _mm_or_ps, _mm_set1_ps,
     _mm_setzero_ps, _mm_shuffle_ps, _mm_sqrt_ps, _mm_storeu_ps, _mm_sub_ps, _mm_unpackhi_ps, _mm_unpacklo_ps,
 };
-use std::ops::{Add, Div, Mul, Sub};
-
-use super::real::Lanes;
 
 /// Four `f32`.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
 pub struct F32x4(__m128);
 
-macro_rules! arithmetic {
-    ($($operator:ident $method:ident $intrinsic:ident;)*) => {$(
-        impl $operator for F32x4 {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: SSE is part of the x86-64 baseline.
-                Self(unsafe { $intrinsic(self.0, other.0) })
-            }
-        }
-    )*};
-}
-
 arithmetic! {
+    F32x4:
     Add add _mm_add_ps;
     Sub sub _mm_sub_ps;
     Mul mul _mm_mul_ps;
@@ -42,6 +29,15 @@ arithmetic! {
 // references to four f32.
 impl Lanes<f32> for F32x4 {
     type Array = [f32; 4];
+    const GROUPS: usize = 1;
+    #[inline(always)]
+    fn of_groups(group: impl Fn(usize) -> [f32; 4]) -> Self {
+        Self::from_array(group(0))
+    }
+    #[inline(always)]
+    fn for_groups(self, mut each: impl FnMut(usize, [f32; 4])) {
+        each(0, self.to_array());
+    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(unsafe { _mm_set1_ps(x) })

@@ -1,7 +1,8 @@
 //! The links of all constraints: their state, and their rows by the number of free points.
 
 use crate::bytes::{Checkpoint, Encode, Reader, encode_struct};
-use crate::constraints::projection::relax_uniform;
+use crate::constraints::projection::relax;
+use crate::constraints::strength_map::Uniform;
 use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::input::links::{Link, LinkSide};
 use crate::input::{ClothId, PointId};
@@ -183,7 +184,7 @@ impl<R: Real> ConstraintLinks<R> {
                 // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
                 #[allow(unsafe_code)]
                 unsafe {
-                    relax_uniform::<R, 2>(points, groups, false, &pass.strength);
+                    relax::<R, _, 2>(points, groups, Uniform, false, &pass.strength);
                 }
             });
         }

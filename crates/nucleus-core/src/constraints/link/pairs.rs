@@ -2,9 +2,11 @@
 //! with a factor each, and with their loads.
 
 use crate::constraints::projection::{LinkLaw, LinkProjection};
+use crate::constraints::side_by_side::{group_starts, load, store};
 use crate::constraints::strength_map::StrengthMap;
 use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::input::links::Link;
+use crate::math::kernel::{self, Kernel};
 use crate::math::{Lanes, Real, Row4};
 use crate::model::blocks::AllBlocks;
 use crate::model::rows::{Row, RowList};
@@ -32,14 +34,15 @@ struct Factors<R> {
     compliance: [R; 4],
 }
 
-impl<R: Real> StrengthMap<R> for &Factors<R> {
+impl<R: Real> StrengthMap<R> for &[PairGroup<R>] {
     #[inline(always)]
-    fn scale(self, _c: R::Lanes, share: R::Lanes, compliance: R::Lanes) -> (R::Lanes, R::Lanes) {
-        (share * R::Lanes::from_array(self.share), compliance * R::Lanes::from_array(self.compliance))
+    fn scale<L: Lanes<R>>(self, at: usize, _c: L, share: L, compliance: L) -> (L, L) {
+        let own = L::of_groups(|k| self[at + k].factor.share);
+        (share * own, compliance * L::of_groups(|k| self[at + k].factor.compliance))
     }
 }
 
-impl<R: Real> LinkLaw<R> for &Factors<R> {}
+impl<R: Real> LinkLaw<R> for &[PairGroup<R>] {}
 
 /// A pair before it is laid out.
 #[derive(Debug, Clone, Copy)]
@@ -51,6 +54,7 @@ struct PairRow<R> {
 impl<R: Real> Row for PairRow<R> {
     type Group = PairGroup<R>;
     const POINTS: usize = 2;
+    const GROUPS: usize = 2;
 
     fn point(&self, k: usize) -> u32 {
         self.row.ends[k]
@@ -129,10 +133,8 @@ impl<R: Real> PairList<R> {
             #[allow(unsafe_code)]
             unsafe {
                 let groups = rows.batch(batch);
-                match loads.of(rows.first_group(batch), groups.len()) {
-                    Some(loads) => relax(points, groups.iter().zip(loads.iter_mut().map(Some)), pass),
-                    None => relax(points, groups.iter().map(|group| (group, None)), pass),
-                }
+                let loads = loads.of(rows.first_group(batch), groups.len());
+                kernel::run(PairSweep { points, groups, loads, pass });
             }
         });
     }
@@ -147,32 +149,40 @@ impl<R: Real> PairList<R> {
     }
 }
 
-/// Sweeps pairs once, and adds the impulses that pull their first points to those of their lane group.
+/// A sweep over pairs, which adds the impulses that pull their first points to `loads`, an entry per group.
 ///
-/// # Safety
-/// The rows of a group share no point, and no other task of the loop touches the points of `groups`.
+/// Safety: the groups come in twos whose rows share no point, and no other task of the loop touches their points.
+struct PairSweep<'a, R> {
+    points: DisjointSlice<'a, Row4<R>>,
+    groups: &'a [PairGroup<R>],
+    loads: Option<&'a mut [VectorGroup<R>]>,
+    pass: &'a LinkPass<R>,
+}
+
 #[allow(unsafe_code)]
-#[inline(always)]
-unsafe fn relax<'a, R: Real>(
-    points: DisjointSlice<'_, Row4<R>>,
-    groups: impl Iterator<Item = (&'a PairGroup<R>, Option<&'a mut VectorGroup<R>>)>,
-    pass: &LinkPass<R>,
-) {
-    let projection = LinkProjection::new(&pass.strength);
-    let per_step = R::Lanes::splat(pass.per_step);
-    for (group, load) in groups {
-        // SAFETY: the caller's promise.
-        let ends = group.row.ends.map(|ends| ends.map(|end| unsafe { points.get(end) }.lanes()));
-        let correction = projection.correction(&group.row, &group.factor, ends);
-        if let Some(load) = load {
-            for (sum, own) in load.iter_mut().zip(correction.push) {
-                *sum = (R::Lanes::from_array(*sum) + own * per_step).to_array();
+impl<R: Real> Kernel<R> for PairSweep<'_, R> {
+    /// # Safety
+    /// See [`PairSweep`].
+    #[inline(always)]
+    unsafe fn run<L: Lanes<R>>(self) {
+        let Self { points, groups: all, mut loads, pass } = self;
+        let projection = LinkProjection::<L>::new(&pass.strength);
+        let per_step = L::splat(pass.per_step);
+        for at in group_starts::<R, L>(all.len(), false) {
+            let groups = &all[at..at + L::GROUPS];
+            // SAFETY: the caller's promise.
+            let ends = unsafe { [0, 1].map(|end| load(points, |k| groups[k].row.ends[end])) };
+            let correction = projection.correction(|k| &groups[k].row, (all, at), ends);
+            if let Some(loads) = &mut loads {
+                let loads = &mut loads[at..at + L::GROUPS];
+                for (axis, own) in correction.push.into_iter().enumerate() {
+                    let sum = L::of_groups(|k| loads[k][axis]) + own * per_step;
+                    sum.for_groups(|k, sum| loads[k][axis] = sum);
+                }
             }
-        }
-        for (ends, moved) in group.row.ends.iter().zip(correction.moved()) {
-            for (&end, moved) in ends.iter().zip(moved) {
+            for (end, moved) in correction.moved().into_iter().enumerate() {
                 // SAFETY: the caller's promise.
-                unsafe { points.set(end, Row4(moved.to_array())) };
+                unsafe { store(points, |k| groups[k].row.ends[end], moved) };
             }
         }
     }
