@@ -20,7 +20,7 @@ use crate::model::surface::Surface;
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::bend::BendStrength;
-use super::hinge::{HingeGroup, HingeRow, MIN_COSINE};
+use super::hinge::{HingeGroup, HingeRow, MIN_COSINE, weights};
 use super::side_by_side::{group_starts, load, store};
 use super::strength_map::{StrengthGroup, StrengthMap};
 
@@ -188,8 +188,7 @@ fn measure<R: Real, L: Lanes<R>, const N: usize>(
     let splat = |value: f64| L::splat(R::from_f64(value));
     let (zero, one, tiny) = (splat(0.0), splat(1.0), L::splat(R::MIN_DENOMINATOR));
     let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|k| hinges[k].anchored[axis]));
-    for (k, x) in x.iter().enumerate() {
-        let weight = L::of_groups(|group| hinges[group].weights[k]);
+    for (weight, x) in weights::<R, L, N>(hinges).into_iter().zip(x) {
         (0..3).for_each(|axis| c[axis] = c[axis] + weight * x[axis]);
     }
     let [edge, left, right] = spans_of(angles, x);
@@ -257,14 +256,14 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for AngleSweep<'_, R,
         let (scale, dropoff) = (L::splat(reading.scale), L::splat(reading.dropoff));
         for at in group_starts::<R, L>(hinges.len(), backward) {
             let (hinges, angles) = (&hinges[at..at + L::GROUPS], &angles[at..at + L::GROUPS]);
-            let weight = |k: usize| L::of_groups(|group| hinges[group].weights[k]);
+            let weights: [L; N] = weights(hinges);
             // SAFETY: the caller's promise.
             let x: [[L; 4]; N] =
                 std::array::from_fn(|k| unsafe { load(points, |group| hinges[group].points[k]) });
             let Measured { chord, direction, longest } = measure(hinges, angles, &x);
             let mut mobility = zero;
             for (k, x) in x.iter().enumerate() {
-                let weight = weight(k);
+                let weight = weights[k];
                 mobility = mobility + x[3] * weight * weight;
             }
             let error = chord - L::of_groups(|k| angles[k].rest) * scale;
@@ -282,7 +281,7 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for AngleSweep<'_, R,
             let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
             let push = direction.map(|x| x * lambda);
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
-                let [mx, my, mz] = push.map(|push| weight(k) * push);
+                let [mx, my, mz] = push.map(|push| weights[k] * push);
                 // SAFETY: the caller's promise.
                 unsafe {
                     let moved = [px - w * mx, py - w * my, pz - w * mz, w];

@@ -10,7 +10,7 @@ use crate::math::kernel::{self, Kernel};
 use crate::math::{Lanes, Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 
-use super::hinge::{HingeGroup, MIN_COSINE};
+use super::hinge::{HingeGroup, MIN_COSINE, RestGroup, weights};
 use super::side_by_side::{group_starts, load, store};
 use super::strength_map::StrengthMap;
 
@@ -23,26 +23,29 @@ pub struct BendStrength<R> {
     pub compliance: R,
 }
 
+/// Hinges, and the lengths of their bending vectors at rest; empty where all are flat.
+pub type RestingHinges<'a, R, const N: usize> = (&'a [HingeGroup<R, N>], &'a [RestGroup<R>]);
+
 /// Sweeps hinges once, in order or backward, with their strength map.
 ///
 /// # Safety
-/// `groups` come in twos whose rows share no point, and no other task of the loop touches their points.
+/// The hinges come in twos of groups whose rows share no point, and no other task of the loop touches their points.
 #[allow(unsafe_code)]
 #[inline]
 pub unsafe fn relax<R: Real, P: StrengthMap<R>, const N: usize>(
     points: DisjointSlice<'_, Row4<R>>,
-    groups: &[HingeGroup<R, N>],
+    hinges: RestingHinges<'_, R, N>,
     map: P,
     backward: bool,
     strength: &BendStrength<R>,
 ) {
     // SAFETY: the caller's promise.
-    unsafe { kernel::run(HingeSweep { points, groups, map, backward, strength }) };
+    unsafe { kernel::run(HingeSweep { points, hinges, map, backward, strength }) };
 }
 
 struct HingeSweep<'a, R, P, const N: usize> {
     points: DisjointSlice<'a, Row4<R>>,
-    groups: &'a [HingeGroup<R, N>],
+    hinges: RestingHinges<'a, R, N>,
     map: P,
     backward: bool,
     strength: &'a BendStrength<R>,
@@ -54,20 +57,20 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R,
     /// See [`relax`].
     #[inline(always)]
     unsafe fn run<L: Lanes<R>>(self) {
-        let Self { points, groups, map, backward, strength } = self;
+        let Self { points, hinges: (groups, rests), map, backward, strength } = self;
         let (share, compliance) = (L::splat(strength.share), L::splat(strength.compliance));
         let (zero, one, tiny) = (L::splat(R::ZERO), L::splat(R::ONE), L::splat(R::MIN_DENOMINATOR));
         let least = L::splat(R::from_f64(MIN_COSINE * MIN_COSINE));
         for at in group_starts::<R, L>(groups.len(), backward) {
             let groups = &groups[at..at + L::GROUPS];
-            let weight = |k: usize| L::of_groups(|group| groups[group].weights[k]);
+            let weights: [L; N] = weights(groups);
             // SAFETY: the caller's promise.
             let x: [[L; 4]; N] =
                 std::array::from_fn(|k| unsafe { load(points, |group| groups[group].points[k]) });
             let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|group| groups[group].anchored[axis]));
             let mut mobility = zero;
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
-                let weight = weight(k);
+                let weight = weights[k];
                 c = [c[0] + weight * px, c[1] + weight * py, c[2] + weight * pz];
                 mobility = mobility + w * weight * weight;
             }
@@ -76,12 +79,15 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R,
             // cos²(θ/2), bounded from below.
             let cosine = one - square * L::of_groups(|group| groups[group].inverse_square_max);
             let cosine = (cosine - least).choose_by_sign(cosine, least);
-            let bent = one - L::of_groups(|group| groups[group].rest) / (length + tiny);
+            let bent = match rests {
+                [] => one,
+                rests => one - L::of_groups(|group| rests[at + group].rest) / (length + tiny),
+            };
             let (share, compliance) = map.scale(at, bent, share, compliance);
             let lambda = share * bent / (mobility + compliance * cosine.sqrt() + tiny);
             let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
-                let [mx, my, mz] = push.map(|push| weight(k) * push);
+                let [mx, my, mz] = push.map(|push| weights[k] * push);
                 // SAFETY: the caller's promise.
                 unsafe {
                     let moved = [px - w * mx, py - w * my, pz - w * mz, w];
@@ -95,8 +101,8 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constraints::angle::{AngleGroup, AngleStrength, AngleSweep};
-    use crate::constraints::hinge::rows;
+    use crate::constraints::angle::{AngleStrength, AngleSweep};
+    use crate::constraints::hinge::{HingeRow, rows};
     use crate::constraints::side_by_side::tests::agrees_in_every_width;
     use crate::constraints::strength_map::{StrengthGroup, Uniform};
     use crate::model::blocks::Blocks;
@@ -146,21 +152,27 @@ mod tests {
     }
 
     fn agrees<const N: usize>(
-        mut hinges: RowList<HingeGroup<f32, N>>,
-        mut angles: RowList<AngleGroup<f32>>,
+        rows: &[HingeRow<f32, N>],
+        sheet: &Surface,
         anchors: &[[f64; 3]],
         (start, backward): (&[Row4<f32>], bool),
     ) -> bool {
+        let blocks = Blocks::new(0, COUNT);
+        let angles: Vec<_> = rows.iter().map(|row| row.angle(sheet, |k| k as usize)).collect();
+        let rests: Vec<_> = rows.iter().map(HingeRow::at_rest).collect();
+        let (mut hinges, mut angles) = (RowList::new(rows, &blocks), RowList::new(&angles, &blocks));
+        let rests = RowList::new(&rests, &blocks);
         hinges.groups_mut().iter_mut().for_each(|group| group.anchor(anchors));
         for (hinge, angle) in hinges.groups().iter().zip(angles.groups_mut()) {
             angle.anchor(hinge, anchors);
             angle.flipped[1] = 1.0;
         }
         let (groups, angles, strength) = (hinges.groups(), angles.groups(), &STRENGTH);
+        let [flat, hinges] = [(groups, &[][..]), (groups, rests.groups())];
         let maps = map(groups.len());
         let (map, signed) = (&maps[..], (&STRENGTH, &READING));
-        agrees_in_every_width!(start, points => HingeSweep { points, groups, map: Uniform, backward, strength })
-            && agrees_in_every_width!(start, points => HingeSweep { points, groups, map, backward, strength })
+        agrees_in_every_width!(start, points => HingeSweep { points, hinges: flat, map: Uniform, backward, strength })
+            && agrees_in_every_width!(start, points => HingeSweep { points, hinges, map, backward, strength })
             && agrees_in_every_width!(start, points => {
                 AngleSweep { points, lists: (groups, angles, &[]), map: Uniform, backward, strength: signed }
             })
@@ -179,14 +191,9 @@ mod tests {
             let (blocks, rows) = (Blocks::new(0, COUNT), rows::<f32>(&sheet, |point| point));
             let mut anchors: Vec<[f64; 3]> = sheet.positions.iter().map(|&x| (x * 0.9).into()).collect();
             anchors.resize(blocks.columns() as usize, [0.0; 3]);
-            let place = |row: u32| row as usize;
-            let four: Vec<_> = rows.of_four.iter().map(|row| row.angle(&sheet, place)).collect();
-            let four = (RowList::new(&rows.of_four, &blocks), RowList::new(&four, &blocks));
-            prop_assert!(agrees(four.0, four.1, &anchors, (&start, backward)));
+            prop_assert!(agrees(&rows.of_four, &sheet, &anchors, (&start, backward)));
             if !rows.of_six.is_empty() {
-                let six: Vec<_> = rows.of_six.iter().map(|row| row.angle(&sheet, place)).collect();
-                let six = (RowList::new(&rows.of_six, &blocks), RowList::new(&six, &blocks));
-                prop_assert!(agrees(six.0, six.1, &anchors, (&start, backward)));
+                prop_assert!(agrees(&rows.of_six, &sheet, &anchors, (&start, backward)));
             }
         }
     }

@@ -23,7 +23,7 @@
 
 use nalgebra::Vector3;
 
-use crate::math::Real;
+use crate::math::{Lanes, Real};
 use crate::model::rows::Row;
 use crate::model::surface::Surface;
 use crate::model::topology::{Seam, fan_triangles, seams, triangle_area};
@@ -37,20 +37,33 @@ pub struct HingeRow<R, const N: usize> {
     inverse_square_max: R,
 }
 
-/// Four hinges side by side. In `f32` 52 bytes a hinge of four points, 68 of six.
+/// Four hinges side by side. In `f32` 48 bytes a hinge of four points, 56 of six.
 #[derive(Debug, Clone, Copy)]
 pub struct HingeGroup<R, const N: usize> {
     /// The points.
     pub points: [[u32; 4]; N],
-    /// Their weights K, whose sum is zero.
-    pub weights: [[R; 4]; N],
+    /// Their weights K, whose sum is zero: all of four, and of six the first, second, third (which is also the fourth) and
+    /// fifth.
+    weights: [[R; 4]; 4],
     /// The bending vector of the anchors. Written at the start of each frame.
     pub anchored: [[R; 4]; 3],
-    /// Length of the bending vector at rest; zero where flat.
-    pub rest: [R; 4],
     /// One over the square of the vector's length when the hinge is folded shut: times |c|² it is sin²(θ/2). Zero for
     /// the twist of a quad, which has no such angle.
     pub inverse_square_max: [R; 4],
+}
+
+/// The lengths of the bending vectors of four hinges at rest; zero where flat.
+#[derive(Debug, Clone, Copy)]
+pub struct RestGroup<R> {
+    /// By lane.
+    pub rest: [R; 4],
+}
+
+/// The length of the bending vector of a hinge at rest, before it is laid out like the hinge.
+#[derive(Debug, Clone, Copy)]
+pub struct RestRow<R, const N: usize> {
+    points: [u32; N],
+    rest: R,
 }
 
 /// Lower bound of cos(θ/2): beyond 120° a hinge is not stiffer than twice. Folded shut it would be rigid, and open in
@@ -165,6 +178,11 @@ impl<R: Real, const N: usize> HingeRow<R, N> {
         self.rest > R::ZERO
     }
 
+    /// The length of its bending vector at rest.
+    pub fn at_rest(&self) -> RestRow<R, N> {
+        RestRow { points: self.points, rest: self.rest }
+    }
+
     fn new(surface: &Surface, points: [u32; N], weights: [f64; N], place: impl Fn(u32) -> u32) -> Self {
         let x = points.map(|point| position(surface, point));
         let vector: Vector3<f64> = (0..N).map(|k| x[k] * weights[k]).sum();
@@ -215,22 +233,60 @@ impl<R: Real, const N: usize> Row for HingeRow<R, N> {
     fn group(rows: [Self; 4]) -> HingeGroup<R, N> {
         HingeGroup {
             points: std::array::from_fn(|k| rows.map(|row| row.points[k])),
-            weights: std::array::from_fn(|k| rows.map(|row| row.weights[k])),
+            weights: std::array::from_fn(|k| rows.map(|row| row.weights[stored::<N>()[k]])),
             anchored: [[R::ZERO; 4]; 3],
-            rest: rows.map(|row| row.rest),
             inverse_square_max: rows.map(|row| row.inverse_square_max),
         }
     }
 }
 
+impl<R: Real, const N: usize> Row for RestRow<R, N> {
+    type Group = RestGroup<R>;
+    const POINTS: usize = N;
+    const GROUPS: usize = HingeRow::<R, N>::GROUPS;
+
+    fn point(&self, k: usize) -> u32 {
+        self.points[k]
+    }
+
+    fn idle(padding_point: u32) -> Self {
+        Self { points: [padding_point; N], rest: R::ZERO }
+    }
+
+    fn group(rows: [Self; 4]) -> RestGroup<R> {
+        RestGroup { rest: rows.map(|row| row.rest) }
+    }
+}
+
+/// Which of its weights a hinge stores.
+const fn stored<const N: usize>() -> [usize; 4] {
+    if N == 6 { [0, 1, 2, 4] } else { [0, 1, 2, 3] }
+}
+
+/// The weights of hinges side by side.
+#[inline(always)]
+pub fn weights<R: Real, L: Lanes<R>, const N: usize>(groups: &[HingeGroup<R, N>]) -> [L; N] {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| L::of_groups(|group| groups[group].weights[k]));
+    // As the rounded weights of the row were made: their sum is zero.
+    let last = L::splat(R::ZERO) - a - b - c - c - d;
+    let all = if N == 6 { [a, b, c, c, d, last] } else { [a, b, c, d, d, d] };
+    std::array::from_fn(|k| all[k])
+}
+
 impl<R: Real, const N: usize> HingeGroup<R, N> {
+    /// The weights of the points.
+    pub fn weights(&self) -> [[R; 4]; N] {
+        weights::<R, R::Lanes, N>(std::slice::from_ref(self)).map(R::Lanes::to_array)
+    }
+
     /// Updates the bending vector of the anchors, in double precision.
     pub fn anchor(&mut self, anchors: &[[f64; 3]]) {
+        let weights = self.weights();
         for lane in 0..4 {
             let x = self.points.map(|point| anchors[point[lane] as usize]);
             for axis in 0..3 {
                 // Relative to the last point, whose weight is minus the sum of the others.
-                let term = |k: usize| self.weights[k][lane].to_f64() * (x[k][axis] - x[N - 1][axis]);
+                let term = |k: usize| weights[k][lane].to_f64() * (x[k][axis] - x[N - 1][axis]);
                 self.anchored[axis][lane] = R::from_f64((0..N - 1).map(term).sum());
             }
         }

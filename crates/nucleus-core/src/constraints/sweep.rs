@@ -5,7 +5,7 @@
 //! which join several blocks, follow colour by colour: the rows of one colour share no point.
 
 use crate::constraints::angle::{AngleGroup, AngleStrength};
-use crate::constraints::hinge::HingeGroup;
+use crate::constraints::hinge::{HingeGroup, RestGroup};
 use crate::constraints::parallel::LinkLists;
 use crate::constraints::projection::relax;
 use crate::constraints::row_loops::for_interface_rows;
@@ -97,10 +97,8 @@ impl<R: Real> Sweeper<'_, R> {
             }
             Effect::Shear(strength, weave) => self.links(&LinkLists::shear(cloth, weave), batch, strength),
             Effect::Bend(strength, angles) => {
-                let (maps, strength) = (&cloth.strength_maps, (strength, angles));
-                self.hinges((&cloth.bend, &cloth.bend_angles, &maps.angles), &maps.bend, batch, strength);
-                let (angles, maps_of_six) = (&cloth.bend_six_angles, &maps.angles_six);
-                self.hinges((&cloth.bend_six, angles, maps_of_six), &maps.bend_six, batch, strength);
+                self.hinges(&HingeLists::of_four(cloth), batch, (strength, angles));
+                self.hinges(&HingeLists::of_six(cloth), batch, (strength, angles));
             }
         }
     }
@@ -115,13 +113,12 @@ impl<R: Real> Sweeper<'_, R> {
                 self.links(&LinkLists::shear(cloth, weave), batch, strength);
             }),
             Effect::Bend(strength, angles) => {
-                let (maps, strength) = (&cloth.strength_maps, (strength, angles));
-                for_interface_rows(pool, &cloth.bend, backward, |batch| {
-                    self.hinges((&cloth.bend, &cloth.bend_angles, &maps.angles), &maps.bend, batch, strength);
+                let (four, six) = (HingeLists::of_four(cloth), HingeLists::of_six(cloth));
+                for_interface_rows(pool, four.rows, backward, |batch| {
+                    self.hinges(&four, batch, (strength, angles));
                 });
-                for_interface_rows(pool, &cloth.bend_six, backward, |batch| {
-                    let (angles, maps_of_six) = (&cloth.bend_six_angles, &maps.angles_six);
-                    self.hinges((&cloth.bend_six, angles, maps_of_six), &maps.bend_six, batch, strength);
+                for_interface_rows(pool, six.rows, backward, |batch| {
+                    self.hinges(&six, batch, (strength, angles));
                 });
             }
         }
@@ -151,19 +148,20 @@ impl<R: Real> Sweeper<'_, R> {
     #[allow(unsafe_code)]
     fn hinges<const N: usize>(
         &self,
-        (rows, angles, angle_maps): HingeLists<'_, R, N>,
-        maps: &RowList<StrengthGroup<R>>,
+        lists: &HingeLists<'_, R, N>,
         batch: RowBatch,
         (strength, reading): (&bend::BendStrength<R>, &AngleStrength<R>),
     ) {
-        let (rows, map, backward) = (rows.batch(batch), maps.batch(batch), self.backward);
-        let angles = (rows, angles.batch(batch), angle_maps.batch(batch));
+        let (map, backward) = (lists.maps.batch(batch), self.backward);
+        let (rows, angles) = (lists.rows.batch(batch), lists.angles.batch(batch));
+        let hinges = (rows, lists.rests.batch(batch));
+        let angles = (rows, angles, lists.angle_maps.batch(batch));
         let strengths = (strength, reading);
         // SAFETY: see `Sweeper`.
         unsafe {
             match (angles.1.is_empty(), map.is_empty()) {
-                (true, true) => bend::relax(self.points, rows, Uniform, backward, strength),
-                (true, false) => bend::relax(self.points, rows, map, backward, strength),
+                (true, true) => bend::relax(self.points, hinges, Uniform, backward, strength),
+                (true, false) => bend::relax(self.points, hinges, map, backward, strength),
                 (false, true) => angle::relax(self.points, angles, Uniform, backward, strengths),
                 (false, false) => angle::relax(self.points, angles, map, backward, strengths),
             }
@@ -171,6 +169,27 @@ impl<R: Real> Sweeper<'_, R> {
     }
 }
 
-/// Hinges, their signed angles, and the vertex maps of the angles.
-type HingeLists<'a, R, const N: usize> =
-    (&'a RowList<HingeGroup<R, N>>, &'a RowList<AngleGroup<R>>, &'a RowList<StrengthGroup<R>>);
+/// Hinges, and the columns of the same layout; each is empty where no hinge needs it.
+struct HingeLists<'a, R, const N: usize> {
+    rows: &'a RowList<HingeGroup<R, N>>,
+    rests: &'a RowList<RestGroup<R>>,
+    maps: &'a RowList<StrengthGroup<R>>,
+    angles: &'a RowList<AngleGroup<R>>,
+    angle_maps: &'a RowList<StrengthGroup<R>>,
+}
+
+impl<'a, R> HingeLists<'a, R, 4> {
+    fn of_four(cloth: &'a ClothModel<R>) -> Self {
+        let ClothModel { bend, bend_rest, bend_angles, strength_maps, .. } = cloth;
+        let (maps, angle_maps) = (&strength_maps.bend, &strength_maps.angles);
+        Self { rows: bend, rests: bend_rest, maps, angles: bend_angles, angle_maps }
+    }
+}
+
+impl<'a, R> HingeLists<'a, R, 6> {
+    fn of_six(cloth: &'a ClothModel<R>) -> Self {
+        let ClothModel { bend_six, bend_six_rest, bend_six_angles, strength_maps, .. } = cloth;
+        let (maps, angle_maps) = (&strength_maps.bend_six, &strength_maps.angles_six);
+        Self { rows: bend_six, rests: bend_six_rest, maps, angles: bend_six_angles, angle_maps }
+    }
+}

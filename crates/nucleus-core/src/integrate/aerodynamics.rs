@@ -16,7 +16,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput, ResistanceModel};
-use crate::math::{Real, Row4, dot};
+use crate::math::{Real, dot};
 use crate::model::ClothModel;
 use crate::model::strength_maps::AirFactors;
 use crate::parallel::disjoint::DisjointSlice;
@@ -183,14 +183,14 @@ pub fn update_normals<R: Real>(
 /// No other task of the loop touches these normals.
 #[allow(unsafe_code)]
 unsafe fn normals_of_block<R: Real>(
-    normals: DisjointSlice<'_, Row4<R>>,
+    normals: DisjointSlice<'_, [R; 3]>,
     points: Range<u32>,
     triangles: &[[u32; 3]],
     (by_area, position): (bool, impl Fn(u32) -> [f64; 3]),
 ) {
     // SAFETY: the caller's promise.
     let normals = unsafe { normals.run(points.clone()) };
-    normals.fill(Row4::ZERO);
+    normals.fill([R::ZERO; 3]);
     for triangle in triangles {
         let [a, b, c] = triangle.map(|point| Vector3::from(position(point)));
         let area = (b - a).cross(&(c - a));
@@ -198,14 +198,14 @@ unsafe fn normals_of_block<R: Real>(
         for point in triangle.iter().filter(|point| points.contains(point)) {
             let normal = &mut normals[(point - points.start) as usize];
             for axis in 0..3 {
-                normal.0[axis] += R::from_f64(area[axis]);
+                normal[axis] += R::from_f64(area[axis]);
             }
         }
     }
     for normal in normals {
-        let length = dot(normal.xyz(), normal.xyz()).sqrt();
+        let length = dot(*normal, *normal).sqrt();
         if length > R::ZERO {
-            normal.0 = normal.0.map(|x| x / length);
+            *normal = normal.map(|x| x / length);
         }
     }
 }

@@ -127,7 +127,7 @@ pub struct MotionColumns<'a, R> {
     /// Velocity in m/s.
     pub velocity: DisjointSlice<'a, Row4<R>>,
     /// Normals of unit length; empty where no air is felt.
-    pub normal: &'a [Row4<R>],
+    pub normal: &'a [[R; 3]],
     /// What gusts, wind shadows and pushed air add to the wind in m/s; empty where nothing does.
     pub added_wind: &'a [Row4<R>],
     /// Acceleration by fields in m/s²; empty without fields.
@@ -168,8 +168,8 @@ unsafe fn move_points<R: Real>(
             let normal = columns.normal[points.start as usize + k];
             let air = mapped.as_ref().unwrap_or(air);
             let slowed = match columns.added_wind.get(points.start as usize + k) {
-                Some(added) => air.with_wind(added.xyz()).slow(kicked.to_array(), normal.xyz()),
-                None => air.slow(kicked.to_array(), normal.xyz()),
+                Some(added) => air.with_wind(added.xyz()).slow(kicked.to_array(), normal),
+                None => air.slow(kicked.to_array(), normal),
             };
             kicked = Row4(slowed).lanes();
         }

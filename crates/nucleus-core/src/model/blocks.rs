@@ -157,6 +157,9 @@ pub fn triangles_by_block(
             by_block[c as usize].push(triangle);
         }
     }
-    by_block.iter_mut().for_each(|triangles| triangles.sort_unstable());
+    for triangles in &mut by_block {
+        triangles.sort_unstable();
+        triangles.shrink_to_fit();
+    }
     by_block
 }

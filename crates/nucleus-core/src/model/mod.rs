@@ -35,7 +35,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::constraints::angle::AngleGroup;
-use crate::constraints::hinge::{self, HingeGroup, HingeRow};
+use crate::constraints::hinge::{self, HingeGroup, HingeRow, RestGroup};
 use crate::constraints::pressure::PressureModel;
 use crate::constraints::shape::ShapeModel;
 use crate::constraints::stretch::{LinkGroup, LinkRow, shear_rows};
@@ -66,6 +66,10 @@ pub struct ClothModel<R> {
     pub bend: RowList<HingeGroup<R, 4>>,
     /// Hinges of six points: between quads.
     pub bend_six: RowList<HingeGroup<R, 6>>,
+    /// Lengths at rest of the bending vectors of `bend`; empty where it is flat.
+    pub bend_rest: RowList<RestGroup<R>>,
+    /// The same of `bend_six`.
+    pub bend_six_rest: RowList<RestGroup<R>>,
     /// Signed angles of `bend`; empty where only the size of an angle matters.
     pub bend_angles: RowList<AngleGroup<R>>,
     /// The same of `bend_six`.
@@ -123,6 +127,8 @@ impl<R: Real> ClothModel<R> {
             shear: RowList::default(),
             bend: RowList::default(),
             bend_six: RowList::default(),
+            bend_rest: RowList::default(),
+            bend_six_rest: RowList::default(),
             bend_angles: RowList::default(),
             bend_six_angles: RowList::default(),
             pressure: PressureModel::default(),
@@ -184,8 +190,9 @@ impl<R: Real> ClothModel<R> {
             strength_maps.bend_six = maps.hinges(&rows.of_six);
             model.bend = RowList::new(&rows.of_four, &model.blocks);
             model.bend_six = RowList::new(&rows.of_six, &model.blocks);
-            let is_bent =
-                rows.of_four.iter().any(HingeRow::is_bent) || rows.of_six.iter().any(HingeRow::is_bent);
+            model.bend_rest = rests(&rows.of_four, &model.blocks);
+            model.bend_six_rest = rests(&rows.of_six, &model.blocks);
+            let is_bent = model.bend_rest.len() + model.bend_six_rest.len() > 0;
             if cloth.lists.bend_angles || cloth.lists.signed_bend && is_bent {
                 let four: Vec<_> = rows.of_four.iter().map(|row| row.angle(surface, point)).collect();
                 let six: Vec<_> = rows.of_six.iter().map(|row| row.angle(surface, point)).collect();
@@ -307,6 +314,14 @@ impl ColliderModel {
         let pseudonormals = Pseudonormals::of(&boundary);
         Self { positions: collider.surface.positions, boundary, pseudonormals, field_map }
     }
+}
+
+/// The lengths of the bending vectors at rest; empty where all hinges are flat.
+fn rests<R: Real, const N: usize>(rows: &[HingeRow<R, N>], blocks: &Blocks) -> RowList<RestGroup<R>> {
+    if !rows.iter().any(HingeRow::is_bent) {
+        return RowList::default();
+    }
+    RowList::new(&rows.iter().map(HingeRow::at_rest).collect::<Vec<_>>(), blocks)
 }
 
 fn stretch_rows<R: Real>(surface: &Surface, cloth: &Cloth, place: impl Fn(u32) -> u32) -> Vec<LinkRow<R>> {

@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use nalgebra::Vector3;
 
+use crate::constraints::bend::RestingHinges;
 use crate::constraints::hinge::{HingeGroup, energy_of_length};
 use crate::constraints::link::pass::max_weld_gap;
 use crate::constraints::liquid::LiquidSolver;
@@ -133,8 +134,13 @@ pub fn elastic_energy<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame
         };
         stretch
             + shear
-            + hinge_energy(state, cloth.bend.groups(), maps.bend.groups(), bend)
-            + hinge_energy(state, cloth.bend_six.groups(), maps.bend_six.groups(), bend)
+            + hinge_energy(state, (cloth.bend.groups(), cloth.bend_rest.groups()), maps.bend.groups(), bend)
+            + hinge_energy(
+                state,
+                (cloth.bend_six.groups(), cloth.bend_six_rest.groups()),
+                maps.bend_six.groups(),
+                bend,
+            )
     };
     cloths.iter().zip(&frame.cloths).map(of_cloth).sum()
 }
@@ -190,15 +196,15 @@ fn length<R: Real>(state: &State<R>, group: &LinkGroup<R>, lane: usize) -> f64 {
 /// The energy of hinges, by the bending stiffness of the cloth in N·m.
 fn hinge_energy<R: Real, const N: usize>(
     state: &State<R>,
-    groups: &[HingeGroup<R, N>],
+    (groups, rests): RestingHinges<'_, R, N>,
     maps: &[StrengthGroup<R>],
     stiffness: f64,
 ) -> f64 {
     let energy = |(k, lane): (usize, usize)| {
         let group = &groups[k];
         let stiffness = stiffness * share_of(maps.get(k).map(|share| &share.above), lane);
-        let [rest, inverse_square_max] =
-            [group.rest, group.inverse_square_max].map(|column| column[lane].to_f64());
+        let rest = rests.get(k).map_or(0.0, |group| group.rest[lane].to_f64());
+        let inverse_square_max = group.inverse_square_max[lane].to_f64();
         stiffness * energy_of_length(bending(state, group, lane), rest, inverse_square_max)
     };
     (0..groups.len()).flat_map(|k| (0..4).map(move |lane| (k, lane))).map(energy).sum()
@@ -206,7 +212,7 @@ fn hinge_energy<R: Real, const N: usize>(
 
 /// The length of a hinge's bending vector.
 fn bending<R: Real, const N: usize>(state: &State<R>, group: &HingeGroup<R, N>, lane: usize) -> f64 {
-    let weights = group.weights.map(|weight| weight[lane]);
+    let weights = group.weights().map(|weight| weight[lane]);
     let points = group.points.map(|point| state.displacement[point[lane] as usize].0);
     let c: [R; 3] = std::array::from_fn(|axis| {
         group.anchored[axis][lane] + weights.iter().zip(points).map(|(&k, x)| k * x[axis]).sum()

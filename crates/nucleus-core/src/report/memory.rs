@@ -46,7 +46,6 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         depenetration_by_cloth,
         predicted,
         corrections,
-        normal,
         area,
         added_wind,
         field,
@@ -54,7 +53,11 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
     let rows: usize = rows.into_iter().map(|column| size_of_val(&column[..])).sum();
     let chambers = size_of_val(&chambers[..]) + size_of_val(&rotations[..]) + size_of_val(&displaced[..]);
     let populations: usize = populations.iter().map(Population::bytes).sum();
-    rows + size_of_val(&anchor[..]) + chambers + size_of_val(&inverse_mass[..]) + populations
+    rows + size_of_val(&anchor[..])
+        + size_of_val(&normal[..])
+        + chambers
+        + size_of_val(&inverse_mass[..])
+        + populations
 }
 
 fn of_cloth<R: Real>(cloth: &ClothModel<R>) -> usize {
@@ -67,6 +70,7 @@ fn of_cloth<R: Real>(cloth: &ClothModel<R>) -> usize {
     links
         + of_list(&cloth.bend)
         + of_list(&cloth.bend_six)
+        + [&cloth.bend_rest, &cloth.bend_six_rest].into_iter().map(of_list).sum::<usize>()
         + angles
         + maps.into_iter().map(of_list).sum::<usize>()
         + [&cloth.strength_maps.stretch_weave, &cloth.strength_maps.shear_weave]

@@ -44,7 +44,7 @@ pub struct State<R> {
     /// a sweep.
     pub corrections: Vec<Row4<R>>,
     /// Normal of unit length; empty if air acts on no cloth. Written once per substep.
-    pub normal: Vec<Row4<R>>,
+    pub normal: Vec<[R; 3]>,
     /// ∂V/∂x of the volume inside, in m²; empty where no cloth has pressure. Written and read in a pass.
     pub area: Vec<Row4<R>>,
     /// What gusts, wind shadows and pushed air add to the wind, in m/s; empty where nothing does. Written once per

@@ -25,7 +25,7 @@ impl<R: Real> State<R> {
                 Row4::ZERO;
                 if models.iter().any(|m| !m.valence.is_empty()) { rows } else { 0 }
             ],
-            normal: vec![Row4::ZERO; if air { rows } else { 0 }],
+            normal: vec![[R::ZERO; 3]; if air { rows } else { 0 }],
             area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
             added_wind: Vec::new(),
             field: Vec::new(),
