@@ -289,7 +289,8 @@ fn apply_pass<R: CompiledReal>(
             let settings = &frame.cloths[*cloth];
             if let (Some(tethers), Some(scale)) = (solver.tethers.get(*cloth), settings.tethers) {
                 let scale = scale.max(0.0) * settings.rest_length_scale.max(0.0);
-                tethers.relax(&mut solver.state.displacement, scale, &solver.pool);
+                let model = &solver.model.cloths[*cloth];
+                tethers.relax(model, &mut solver.state.displacement, scale, &solver.pool);
             }
         }
         Pass::Links(at) => {

@@ -53,6 +53,8 @@ pub struct ClothLists {
     pub plastic: bool,
     /// Points are tethered to pins at some time.
     pub tethers: bool,
+    /// Tethered cloth has long links between its points too.
+    pub long_links: bool,
     /// Links buckle at some time.
     pub buckling: bool,
 }
@@ -74,6 +76,7 @@ impl ClothLists {
         shells: false,
         plastic: false,
         tethers: false,
+        long_links: false,
         buckling: false,
     };
     /// Everything off: free points.
@@ -92,6 +95,7 @@ impl ClothLists {
         shells: false,
         plastic: false,
         tethers: false,
+        long_links: false,
         buckling: false,
     };
 }

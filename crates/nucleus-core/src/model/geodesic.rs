@@ -40,6 +40,12 @@ pub struct RestDistances {
     corners: Vec<Vec<Corner>>,
 }
 
+/// Labels that spread from one point, and the points that have one.
+struct Spread {
+    found: Vec<Vec<Label>>,
+    touched: Vec<u32>,
+}
+
 /// A label on its way: its distance as ordered bits, the point, the group and the pin.
 type Arriving = Reverse<(u64, u32, u32, u32)>;
 
@@ -94,6 +100,67 @@ impl RestDistances {
             }
         }
         labels
+    }
+
+    /// For each point, a point towards its nearest pin at a distance of about `radius`, and the distance along the mesh to
+    /// it, in metres; `None` for pins and for points that are nearer to a pin.
+    ///
+    /// Labels spread from the point in a narrow strip round the shortest way to the pin. Of those that arrive at `radius`,
+    /// the one with the shortest way to the pin counts.
+    pub fn towards_pins(&self, labels: &[Vec<Label>], radius: f64) -> Vec<Option<(u32, f64)>> {
+        let mut spread_from = Spread { found: vec![Vec::new(); labels.len()], touched: Vec::new() };
+        let from_pin =
+            |point: u32| labels[point as usize].first().map_or(f64::INFINITY, |label| label.distance);
+        let one = |point: u32| {
+            let own = from_pin(point);
+            // The distance to the pin is that of its tether.
+            (own.is_finite() && own > radius)
+                .then(|| self.towards_pin(point, radius, &from_pin, &mut spread_from))
+        };
+        (0..labels.len() as u32).map(one).map(Option::flatten).collect()
+    }
+
+    fn towards_pin(
+        &self,
+        point: u32,
+        radius: f64,
+        from_pin: &impl Fn(u32) -> f64,
+        local: &mut Spread,
+    ) -> Option<(u32, f64)> {
+        let Spread { found, touched } = local;
+        touched.drain(..).for_each(|other| found[other as usize].clear());
+        let longest = self.corners[point as usize].iter().map(|corner| corner.sides[0]).fold(0.0, f64::max);
+        let (own, most) = (from_pin(point), radius + longest);
+        let mut best: Option<(f64, u32, f64)> = None;
+        let mut arriving: BinaryHeap<Reverse<(u64, u32)>> = [Reverse((0, point))].into();
+        while let Some(Reverse((bits, at))) = arriving.pop() {
+            let label = Label { pin: point, distance: f64::from_bits(bits), group: point };
+            if label.distance > most {
+                break;
+            }
+            if !found[at as usize].is_empty() {
+                continue;
+            }
+            found[at as usize].push(label);
+            touched.push(at);
+            let way = label.distance + from_pin(at);
+            if label.distance >= radius && best.is_none_or(|(least, ..)| way < least) {
+                best = Some((way, at, label.distance));
+            }
+            for (next, distance) in self.corners[at as usize].iter().flat_map(|c| spread(c, &label, found)) {
+                if distance + from_pin(next) < own + longest / 2.0 {
+                    arriving.push(Reverse((distance.to_bits(), next)));
+                }
+            }
+        }
+        best.map(|(_, at, distance)| (at, distance))
+    }
+
+    /// The mean length of the edges, in metres.
+    pub fn mean_edge(&self) -> f64 {
+        let sides = self.corners.iter().flatten().flat_map(|corner| [corner.sides[0], corner.sides[1]]);
+        let (sum, count) = sides.fold((0.0, 0.0), |(sum, count), side| (sum + side, count + 1.0));
+        sum / f64::max(count, 1.0)
     }
 
     /// All pins, each with its group.
@@ -195,6 +262,31 @@ mod tests {
                     let off = label.distance - straight;
                     assert!(off > -1e-9 && off < 0.01 * straight + 1e-9, "{point} to {label:?}: {straight}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_long_link_on_a_flat_mesh_is_as_long_as_its_straight_line_and_points_to_the_pin() {
+        for (split, pins) in [(false, vec![0]), (true, vec![12]), (true, (0..13).collect())] {
+            let surface = grid(13, f64::INFINITY, split);
+            let mut is_pinned = [false; 169];
+            pins.iter().for_each(|&pin: &usize| is_pinned[pin] = true);
+            let mesh = RestDistances::new(&surface, &[], |point| point);
+            let labels = mesh.labels(&is_pinned);
+            let radius = 4.0 / 12.0;
+            for (point, found) in mesh.towards_pins(&labels, radius).into_iter().enumerate() {
+                let Some((end, distance)) = found else { continue };
+                let straight = (surface.positions[point] - surface.positions[end as usize]).norm();
+                assert!(
+                    distance > straight - 1e-9 && distance < 1.01 * straight,
+                    "{point} to {end}: {distance}"
+                );
+                let [own, next] = [point, end as usize].map(|point| labels[point][0].distance);
+                assert!(
+                    distance >= radius && own - next > 0.9 * distance,
+                    "{point} to {end}: {own} and {next} m"
+                );
             }
         }
     }

@@ -57,6 +57,36 @@ fn no_point_is_farther_from_a_pin_than_the_flat_sheet_reaches() {
     }
 }
 
+/// Positions and the largest 99 % strain of a strip that hangs by its upper edge in a wind.
+fn in_wind(lists: ClothLists, evaluations: f64, threads: usize) -> (u64, f64) {
+    let strip = grid(9, 129, Vec3::x() / 8.0, -2.0 * Vec3::y());
+    let cloth = ClothFrame { drag: 0.05, ..tethered() };
+    let input = FrameInput {
+        pins: pins(&strip, 0..9),
+        cloths: vec![cloth],
+        wind: 3.0 * Vec3::z(),
+        ..frame(3, physical(evaluations))
+    };
+    let mut solver = Solver::<f32>::new(one_cloth(strip, ClothLists { air: true, ..lists }), threads);
+    let worst = (0..16).map(|_| solver.step(&input, &mut ()).strain_99).fold(0.0, f64::max);
+    (solver.state_hash(), worst)
+}
+
+#[test]
+fn long_links_hold_a_strip_in_wind_better_than_four_times_the_evaluations_without() {
+    let linked = ClothLists { long_links: true, ..TETHERED };
+    let (with, without) = (in_wind(linked, 24.0, 1).1, in_wind(TETHERED, 96.0, 1).1);
+    assert!(with < without, "{with} with long links, {without} without at four times the evaluations");
+}
+
+#[test]
+fn long_links_give_the_same_bits_on_any_number_of_threads() {
+    let linked = ClothLists { long_links: true, ..TETHERED };
+    let [one, two] = [1, 2].map(|threads| in_wind(linked, 24.0, threads).0);
+    assert_eq!(one, two);
+    assert_ne!(one, in_wind(TETHERED, 24.0, 1).0);
+}
+
 // The hem weighs 0.96 N, and the strip carries 312 N: it stretches by 0.3 %. Sweeps alone leave far more, because a light
 // point takes nearly all of each correction.
 #[test]

@@ -221,7 +221,7 @@ impl Compiler<'_> {
 fn constraint_lists(graph: &Graph, cloth: NodeId, nucleus: NodeId, scales: &MapScales) -> ClothLists {
     use n_cloth::{
         ADD_CROSS_LINKS, BEND_RESISTANCE, BEND_STIFFNESS, BUCKLING, COMPRESSION_RESISTANCE,
-        COMPRESSION_STIFFNESS, DRAG, LIFT, SHEAR_RESISTANCE, SHEAR_STIFFNESS, STRETCH_DAMP,
+        COMPRESSION_STIFFNESS, DRAG, LIFT, LONG_LINKS, SHEAR_RESISTANCE, SHEAR_STIFFNESS, STRETCH_DAMP,
         STRETCH_RESISTANCE, STRETCH_STIFFNESS, TETHERS, WARP_STIFFNESS, WEAVE, WEFT_STIFFNESS,
     };
     let used = |key, scale: f64| scale != 0.0 && graph.is_ever_nonzero(cloth, key);
@@ -249,6 +249,7 @@ fn constraint_lists(graph: &Graph, cloth: NodeId, nucleus: NodeId, scales: &MapS
         damp: used(&STRETCH_DAMP, 1.0) || used(&n_base::DAMP, scales.damp),
         self_collision: graph.is_ever_nonzero(cloth, &n_base::SELF_COLLIDE),
         tethers: graph.is_ever_nonzero(cloth, &TETHERS),
+        long_links: graph.is_ever_nonzero(cloth, &LONG_LINKS),
         buckling: stretch && !classic && graph.is_ever_nonzero(cloth, &BUCKLING),
         ..ClothLists::NONE
     };

@@ -92,7 +92,7 @@ fn a_constraint_list_exists_only_if_its_attribute_is_ever_nonzero() {
         "stretchResistance: 0, compressionResistance: 0, bendResistance: 0, stretchDamp: 0, drag: 0, lift: 0";
     let off = "stretch: false, cross_links: false, shear: false, bend: false, air: false, damp: false, self_collision: true";
     let soft = "bend_angles: false, pressure: false, shape: false, shells: false, plastic: false, tethers: false, \
-        buckling: false";
+        long_links: false, buckling: false";
     assert_eq!(lists(nothing), format!("{off}, signed_bend: false, {soft}"));
     let on = "stretch: true, cross_links: true, shear: false, bend: true, air: true, damp: true, self_collision: true";
     assert_eq!(lists(""), format!("{on}, signed_bend: true, {soft}"));
