@@ -1,6 +1,7 @@
-//! Hints at cloth that hangs by pins and that its budget leaves stretched, before a run; and the budget that
-//! `autoEvaluations` chose.
+//! Hints at cloth that hangs by pins and that its budget leaves stretched, before a run; the budget that `autoEvaluations`
+//! chose; and budgets beyond what single precision resolves.
 
+use nucleus_core::{FrameInput, ResistanceModel};
 use nucleus_graph::compile::budget::{Hanging, MAX_BUDGET, hanging};
 use nucleus_graph::compile::{ObjectKind, Program};
 
@@ -51,6 +52,27 @@ pub fn budgets(program: &Program) -> Vec<String> {
     program.nuclei().iter().enumerate().filter_map(line).collect()
 }
 
+/// Evaluations in 1/24 s from which on single precision is farther from the limit than with half of them, in fast motion. A
+/// correction per step is then below half the rounding of a displacement, and its smaller components are lost.
+const SINGLE_PRECISION: f64 = 2_000.0;
+
+/// Warnings of the nuclei whose evaluations single precision does not resolve, one line each.
+pub fn unresolved_steps(program: &Program) -> Vec<String> {
+    let warning = |(own, input): (&nucleus_graph::compile::NucleusProgram, FrameInput)| {
+        let ResistanceModel::Physical { evaluations } = input.resistance else { return None };
+        let name = program.graph().node(own.node()).name();
+        (evaluations > SINGLE_PRECISION).then(|| {
+            format!(
+                "warning: `{name}` takes {} evaluations in 1/24 s: in single precision, errors of fast motion grow again \
+                 from about {} on, because positions are rounded in each step; use fewer, or `--scalar f64`",
+                figures::number(evaluations),
+                figures::number(SINGLE_PRECISION)
+            )
+        })
+    };
+    program.nuclei().iter().zip(program.first_inputs()).filter_map(warning).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -72,6 +94,23 @@ mod tests {
         let scene =
             read_scene_text(&text, Path::new("curtain.ron")).unwrap_or_else(|found| panic!("{found:?}")).0;
         hints(&compile(&scene).unwrap_or_else(|found| panic!("{found:?}")))
+    }
+
+    #[test]
+    fn evaluations_that_single_precision_does_not_resolve_are_warned_of() {
+        let warnings = |evaluations: u32| {
+            let text = format!(
+                "Scene(time: (start: 1, end: 9, fps: 24), nodes: {{
+                    \"nucleus\": nucleus(evaluations: {evaluations}),
+                    \"plane\": polyPlane(),
+                    \"curtain\": nCloth(inputMesh: \"plane\"),
+                }})"
+            );
+            let scene = read_scene_text(&text, Path::new("curtain.ron")).expect("a scene").0;
+            unresolved_steps(&compile(&scene).unwrap_or_else(|found| panic!("{found:?}")))
+        };
+        assert_eq!(warnings(2_000), [""; 0]);
+        assert!(warnings(12_000)[0].starts_with("warning: `nucleus` takes 12000 evaluations in 1/24 s"));
     }
 
     #[test]

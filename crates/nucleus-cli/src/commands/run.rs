@@ -151,6 +151,9 @@ impl Run {
             }
         };
         hanging::budgets(&program).iter().for_each(|line| say!("{line}"));
+        if self.scalar == Scalar::F32 {
+            hanging::unresolved_steps(&program).iter().for_each(|line| say!("{line}"));
+        }
         process::listen_for_signals()?;
         let facts = self.facts(setting, if is_changed { &read } else { &program })?;
         let coordinates = recording::texture_coordinates(&scene, &program);
