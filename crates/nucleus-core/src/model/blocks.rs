@@ -6,6 +6,8 @@ use crate::model::surface::Surface;
 
 /// Points per block, about.
 const POINTS_PER_BLOCK: usize = 1024;
+/// Points above which a cloth has two blocks.
+const MIN_SHARED_POINTS: usize = 512;
 
 /// The blocks of one cloth: runs of rows in the columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -136,7 +138,9 @@ impl Partition for AllBlocks {
 }
 
 fn block_count(points: usize) -> u32 {
-    (points / POINTS_PER_BLOCK).max(1) as u32
+    // Two threads share a cloth that is smaller than two blocks, unless the loops would be longer than their work.
+    let least = points.div_ceil(MIN_SHARED_POINTS).clamp(1, 2);
+    (points / POINTS_PER_BLOCK).max(least) as u32
 }
 
 /// The triangles of each block: all with a point in it, so that the normals of a block need no other block.
