@@ -78,7 +78,7 @@ node_table! {
         SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("nucleus_graph::compile::thickness");
         /// Enables collisions with other objects.
         COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::material");
-        /// Enables self-collision.
+        /// Enables self-collision. A liquid collides with itself only where it is given.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::thickness");
         /// Objects whose layers differ by less than `collisionLayerRange` collide. In a contact, the object in the lower layer is the heavier one.
         COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::material");

@@ -137,7 +137,7 @@ node_table! {
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 1, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile");
         /// Solver data that Maya draws.
         SOLVER_DISPLAY: Choice = choice("solverDisplay", "svds", 0, &[(0, "Off"), (1, "Collision Thickness"), (2, "Self Collision Thickness")]).elsewhere("only Maya's viewport draws it");
-        /// Collision radius, as a multiple of `radius`.
+        /// Collision radius, as a multiple of `radius`. Default of a liquid: half of its rest distance, so that it touches walls.
         COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cwds", 1.0).soft(0.0, 2.0).solved("nucleus_core::contact::material");
         /// Collision radius among the particles themselves, as a multiple of the collision radius.
         SELF_COLLIDE_WIDTH_SCALE: f64 = float("selfCollideWidthScale", "scws", 1.0).soft(0.001, 2.0).solved("nucleus_graph::compile::thickness");

@@ -9,7 +9,7 @@ use nucleus_core::{
 };
 
 use crate::attributes::{n_base, nucleus};
-use crate::compile::{NucleusProgram, Object, ObjectKind, Program};
+use crate::compile::{NucleusProgram, Object, ObjectKind, Program, self_collides};
 use crate::graph::EvalContext;
 
 /// The ground planes of all nuclei.
@@ -248,7 +248,7 @@ fn collide(program: &Program, a: usize, b: usize, moment: &EvalContext) -> bool 
     let [kind_a, kind_b] = [a, b].map(|object| program.objects()[object].kind);
     let [(node_a, nucleus_a), (node_b, nucleus_b)] = [kind_a, kind_b].map(|kind| program.node_of(kind));
     if a == b {
-        return moment.get(node_a, &n_base::SELF_COLLIDE);
+        return self_collides(moment, node_a);
     }
     let collide = moment.get(node_a, &n_base::COLLIDE) && moment.get(node_b, &n_base::COLLIDE);
     let are_cloths = [kind_a, kind_b].iter().all(|kind| matches!(kind, ObjectKind::Cloth(_)));

@@ -13,7 +13,7 @@ use crate::graph::NodeId;
 use crate::memory::{Cost, Size};
 
 use super::compiler::Compiler;
-use super::particles::rest_distance;
+use super::liquids::rest_distance;
 
 /// Share of the spacing by which lines are moved aside, so that they meet no vertex or edge of a regular mesh.
 const ASIDE: [f64; 2] = [1.234_567e-5, 2.345_678e-5];

@@ -2,25 +2,21 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, Liquid, Mass, Particles, SelfCollision, Start,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, Mass, Particles, SelfCollision, Start,
     VertexMaps,
 };
 
 use crate::attributes::{Key, n_base, n_particle, nucleus, particle};
-use crate::graph::{EvalContext, NodeId};
+use crate::graph::NodeId;
 use crate::memory::{Cost, Size};
 
 use super::compiler::Compiler;
 use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
+use super::liquids::{WALL_DISTANCE, ever_self_collides, self_collides};
 use super::particle_ramps::{EVENT_ROOM, is_event_target};
 use super::program::{EvaluationInterval, ObjectKind};
 use super::sources::{ClothSource, Emitter, MapScales, RecordedPoints};
-
-/// Kinematic viscosity in m²/s at a `viscosity` of 1: about that of honey.
-const HONEY: f64 = 0.01;
-/// Surface tension over density in m³/s² at a `surfaceTension` of 1: its capillary length is 1 cm.
-const CENTIMETRE_DROPS: f64 = 1e-3;
 
 impl Compiler<'_> {
     /// Compiles the particles of a node.
@@ -30,6 +26,7 @@ impl Compiler<'_> {
         let places = surface.positions.clone();
         let surface = self.program.units.surface(surface);
         let recorded = self.recorded(id, None)?;
+        self.check_liquid(id);
         let velocities = self.first_given(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
         let velocities = match self.plays_from_start(id) {
             true => Vec::new(),
@@ -39,7 +36,7 @@ impl Compiler<'_> {
         let lists = ClothLists {
             air: graph.is_ever_nonzero(id, &n_particle::DRAG)
                 && graph.is_ever_nonzero(self.program.node, &nucleus::AIR_DENSITY),
-            self_collision: graph.is_ever_nonzero(id, &n_base::SELF_COLLIDE),
+            self_collision: ever_self_collides(graph, id),
             ..ClothLists::NONE
         };
         let mass = self.start.get(id, &n_particle::POINT_MASS);
@@ -161,37 +158,18 @@ impl Compiler<'_> {
     }
 }
 
-/// Distance of the particles of a liquid at rest, in units of its radii: `restDensity` balls of the radius times
-/// `radiusScaleSPH` overlap each point.
-pub(super) fn rest_distance(at: &EvalContext<'_>, node: NodeId) -> f64 {
-    let number = |key: &Key<f64>| at.get(node, key);
-    let radius = number(&n_particle::RADIUS) * number(&n_particle::RADIUS_SCALE_SPH);
-    let volume = 4.0 / 3.0 * std::f64::consts::PI / number(&n_particle::REST_DENSITY);
-    // Newton's iteration for the cube root, the same bits on every machine; the volume is at most 4.2.
-    radius * (0..32).fold(1.0, |root: f64, _| root - (root - volume / (root * root)) / 3.0)
-}
-
 impl EvaluationInterval<'_> {
-    /// The liquid of a node in a frame, if it is one.
-    fn liquid(&self, node: NodeId) -> Option<Liquid> {
-        if !self.to.get(node, &n_particle::ENABLE_SPH) {
-            return None;
-        }
-        let number = |key: &Key<f64>| self.to.get(node, key);
-        let viscosity = number(&n_particle::VISCOSITY);
-        Some(Liquid {
-            spacing: self.nucleus.units.length(rest_distance(&self.to, node)),
-            incompressibility: number(&n_particle::INCOMPRESSIBILITY),
-            viscosity: HONEY * viscosity * viscosity,
-            surface_tension: CENTIMETRE_DROPS * number(&n_particle::SURFACE_TENSION),
-        })
-    }
-
-    /// The attributes of particles in a frame. Their thickness is the radius.
+    /// The attributes of particles in a frame. Their thickness is the radius; that of a liquid, half the rest distance
+    /// unless it is given.
     pub(super) fn particle_frame(&self, node: NodeId) -> ClothFrame {
         let number = |key: &Key<f64>| self.to.get(node, key);
         let radius = self.nucleus.units.length(number(&n_particle::RADIUS));
-        let thickness = radius * number(&n_particle::COLLIDE_WIDTH_SCALE).max(0.0);
+        let liquid = self.liquid(node);
+        let thickness = match (liquid, self.given(node, &n_particle::COLLIDE_WIDTH_SCALE)) {
+            (Some(liquid), None) => WALL_DISTANCE * liquid.spacing,
+            (None, None) => radius,
+            (_, Some(scale)) => radius * scale.max(0.0),
+        };
         ClothFrame {
             stretch_resistance: 0.0,
             compression_resistance: 0.0,
@@ -214,13 +192,13 @@ impl EvaluationInterval<'_> {
             elements: Elements::Points,
             layer: number(&n_base::COLLISION_LAYER),
             self_collision: SelfCollision {
-                on: self.to.get(node, &n_base::SELF_COLLIDE),
+                on: self_collides(&self.to, node),
                 thickness: thickness * number(&n_particle::SELF_COLLIDE_WIDTH_SCALE).max(0.0),
                 elements: Elements::Points,
                 edges: false,
             },
             point_field: self.point_field(node, radius),
-            liquid: self.liquid(node),
+            liquid,
             conserve: number(&particle::CONSERVE),
             rotation_friction: number(&n_particle::ROTATION_FRICTION),
             rotation_damp: number(&n_particle::ROTATION_DAMP),

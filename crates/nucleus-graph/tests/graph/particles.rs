@@ -102,6 +102,62 @@ fn a_liquid_at_rest_overlaps_as_often_as_its_rest_density_says() {
     assert_eq!(self::program(&dry).first_input().cloths[0].liquid, None);
 }
 
+/// A box that is open at its top: 0.4 m wide and deep, 0.5 m high.
+const OPEN_BOX: &str =
+    "v -0.2 0 -0.2\nv 0.2 0 -0.2\nv 0.2 0 0.2\nv -0.2 0 0.2\nv -0.2 0.5 -0.2\nv 0.2 0.5 -0.2
+v 0.2 0.5 0.2\nv -0.2 0.5 0.2\nf 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+
+// EVIDENCE: N1.2-11  liquid that is poured into a vessel stays in it and stands at the level of its volume
+#[test]
+fn liquid_poured_into_a_box_stays_in_it_at_the_level_of_its_volume() {
+    const WALL: f64 = 0.001;
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("box.obj"), OPEN_BOX).expect("written");
+    for (radius, count) in [(0.031, 300), (0.0207, 1000)] {
+        // With one ball over each point, a particle at rest has the volume of its ball.
+        let nodes = format!(
+            r#""n": nucleus(subSteps: 4), "w": mesh(file: "box.obj"), "r": nRigid(inputMesh: "w", thickness: {WALL}),
+            "q": nParticle(enableSPH: true, radius: {radius}, restDensity: 1, viscosity: 0.05, maxCount: {count}),
+            "e": pointEmitter(target: "q", emitterType: volume, volumeShape: cube, translate: (0, 0.4, 0),
+                scale: (0.1, 0.05, 0.1), rate: {})"#,
+            0.8 * f64::from(count)
+        );
+        // There is room for the particles that are emitted up to the end of the scene.
+        let text = of_nodes(&nodes, "").replace("end: 24", "end: 97");
+        let (scene, _) = read_scene_text(&text, &folder.path().join("scene.ron")).expect("it can be read");
+        let program = compile(&scene).unwrap_or_else(|found| panic!("{found:?}"));
+        let poured = places(&program, 84);
+        let inside = |place: &&[f32; 3]| place[0].abs() < 0.2 && place[2].abs() < 0.2 && place[1] > 0.0;
+        assert_eq!((poured.len(), poured.iter().filter(inside).count()), (count as usize, count as usize));
+        // The mean height of a liquid is half of its level. It has the space within the thickness of the walls.
+        let mean = poured.iter().map(|place| f64::from(place[1])).sum::<f64>() / poured.len() as f64;
+        let level = 2.0 * (mean - WALL);
+        let volume = f64::from(count) * 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
+        let expected = volume / (0.4 - 2.0 * WALL).powi(2);
+        println!("{count} particles: {level:.4} m, by the volume {expected:.4} m");
+        assert!((level / expected - 1.0).abs() < 0.05, "{count}: {level} m, by the volume {expected} m");
+    }
+}
+
+#[test]
+fn a_liquid_that_contact_keeps_from_its_rest_distance_is_warned_of() {
+    let of = |fields: &str| {
+        let nodes =
+            format!(r#""n": nucleus(), "q": nParticle(enableSPH: true, maximumCorner: (1, 1, 1){fields})"#);
+        warnings(&of_nodes(&nodes, ""))
+    };
+    assert_eq!(of(""), [""; 0]);
+    assert_eq!(of(", collideWidthScale: 0.6"), [""; 0]);
+    let [apart] = &of(", selfCollide: true, collideWidthScale: 0.7, selfCollideWidthScale: 2")[..] else {
+        panic!()
+    };
+    assert!(apart.contains(
+        "`selfCollide` keeps the particles of the liquid `q` 0.560 apart, but at rest they are 0.256"
+    ));
+    let [high] = &of(", collideWidthScale: 1")[..] else { panic!() };
+    assert!(high.contains("`collideWidthScale` keeps the liquid `q` 0.200 away from walls"), "{high}");
+}
+
 #[test]
 fn a_volume_that_cannot_be_filled_is_an_error_that_names_the_fix() {
     let errors = |fields: &str| {

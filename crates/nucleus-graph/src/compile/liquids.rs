@@ -1,0 +1,107 @@
+//! Liquids: the rest distance of their particles, and how far these keep from each other and from walls.
+//!
+//! A particle of a liquid at rest stands for a cube whose edge is the rest distance. Density alone keeps particles apart, so
+//! they collide as balls only where `selfCollide` is given; and a wall is at the face of the cube, so that a vessel holds
+//! the volume of the particles that are poured into it, unless `collideWidthScale` is given.
+
+use nucleus_core::Liquid;
+
+use crate::attributes::{Key, n_base, n_particle};
+use crate::graph::{EvalContext, Graph, NodeId};
+
+use super::compiler::Compiler;
+use super::program::EvaluationInterval;
+
+/// Kinematic viscosity in m²/s at a `viscosity` of 1: about that of honey.
+const HONEY: f64 = 0.01;
+/// Surface tension over density in m³/s² at a `surfaceTension` of 1: its capillary length is 1 cm.
+const CENTIMETRE_DROPS: f64 = 1e-3;
+/// Distance of particles from a wall where `collideWidthScale` is not given, in rest distances.
+pub(super) const WALL_DISTANCE: f64 = 0.5;
+/// Contact distance beyond which a liquid is warned of, as a multiple of the natural one.
+const MAX_DISTANCE: f64 = 1.25;
+
+/// Distance of the particles of a liquid at rest, in scene units: `restDensity` balls of the radius times `radiusScaleSPH`
+/// overlap each point.
+pub(super) fn rest_distance(at: &EvalContext<'_>, node: NodeId) -> f64 {
+    let number = |key: &Key<f64>| at.get(node, key);
+    let radius = number(&n_particle::RADIUS) * number(&n_particle::RADIUS_SCALE_SPH);
+    let volume = 4.0 / 3.0 * std::f64::consts::PI / number(&n_particle::REST_DENSITY);
+    // Newton's iteration for the cube root, the same bits on every machine; the volume is at most 4.2.
+    radius * (0..32).fold(1.0, |root: f64, _| root - (root - volume / (root * root)) / 3.0)
+}
+
+/// Whether an object collides with itself at a frame. A liquid does where `selfCollide` is given.
+pub(crate) fn self_collides(at: &EvalContext<'_>, node: NodeId) -> bool {
+    at.get(node, &n_base::SELF_COLLIDE)
+        && (at.graph().is_given(node, &n_base::SELF_COLLIDE) || !is_liquid(at, node))
+}
+
+/// Whether particles collide with themselves at any frame.
+pub(super) fn ever_self_collides(graph: &Graph, node: NodeId) -> bool {
+    let is_given = graph.is_given(node, &n_base::SELF_COLLIDE);
+    let is_always_liquid =
+        || !graph.changes(node, &n_particle::ENABLE_SPH) && is_liquid(&graph.at(0.0), node);
+    graph.is_ever_nonzero(node, &n_base::SELF_COLLIDE) && (is_given || !is_always_liquid())
+}
+
+fn is_liquid(at: &EvalContext<'_>, node: NodeId) -> bool {
+    let has_it = at.graph().node(node).node_type().attribute(n_particle::ENABLE_SPH.row.name).is_some();
+    has_it && at.get(node, &n_particle::ENABLE_SPH)
+}
+
+impl EvaluationInterval<'_> {
+    /// The liquid of a node in a frame, if it is one.
+    pub(super) fn liquid(&self, node: NodeId) -> Option<Liquid> {
+        if !self.to.get(node, &n_particle::ENABLE_SPH) {
+            return None;
+        }
+        let number = |key: &Key<f64>| self.to.get(node, key);
+        let viscosity = number(&n_particle::VISCOSITY);
+        Some(Liquid {
+            spacing: self.nucleus.units.length(rest_distance(&self.to, node)),
+            incompressibility: number(&n_particle::INCOMPRESSIBILITY),
+            viscosity: HONEY * viscosity * viscosity,
+            surface_tension: CENTIMETRE_DROPS * number(&n_particle::SURFACE_TENSION),
+        })
+    }
+}
+
+impl Compiler<'_> {
+    /// Warns of a liquid that contact keeps from its rest distance, at the first frame.
+    pub(super) fn check_liquid(&mut self, node: NodeId) {
+        if !is_liquid(&self.start, node) {
+            return;
+        }
+        let graph = &self.scene.graph;
+        let name = graph.node(node).name();
+        let rest = rest_distance(&self.start, node);
+        let radius = self.start.get(node, &n_particle::RADIUS);
+        let width = match graph.is_given(node, &n_particle::COLLIDE_WIDTH_SCALE) {
+            true => radius * self.start.get(node, &n_particle::COLLIDE_WIDTH_SCALE).max(0.0),
+            false => WALL_DISTANCE * rest,
+        };
+        let apart = 2.0 * width * self.start.get(node, &n_particle::SELF_COLLIDE_WIDTH_SCALE).max(0.0);
+        if self_collides(&self.start, node) && apart > MAX_DISTANCE * rest {
+            let message = format!(
+                "`selfCollide` keeps the particles of the liquid `{name}` {apart:.3} apart, but at rest they are {rest:.3} \
+                 apart: it takes up to {:.0} times its volume",
+                (apart / rest).powi(3)
+            );
+            let place = self.place(node, &n_base::SELF_COLLIDE.row);
+            let help = "leave out `selfCollide`: the density of the liquid keeps its particles apart";
+            self.findings.warning(&place, message).help(help);
+        }
+        if width > MAX_DISTANCE * WALL_DISTANCE * rest {
+            let message = format!(
+                "`collideWidthScale` keeps the liquid `{name}` {width:.3} away from walls, where half of its rest distance \
+                 is {:.3}: it stands too high in a vessel",
+                WALL_DISTANCE * rest
+            );
+            let place = self.place(node, &n_particle::COLLIDE_WIDTH_SCALE.row);
+            let help =
+                "leave out `collideWidthScale`: the liquid then touches walls with half of its rest distance";
+            self.findings.warning(&place, message).help(help);
+        }
+    }
+}
