@@ -16,6 +16,7 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
 use super::neighbours::{CHUNK, Neighbours, chunk_range};
+use super::pair::Pair;
 use super::walls::Walls;
 
 /// Most iterations in a time step.
@@ -23,7 +24,7 @@ const MAX_ITERATIONS: u32 = 100;
 /// Mean excess of density at which the solution is accepted.
 pub const TOLERANCE: f32 = 2e-4;
 /// Largest eigenvalue of the preconditioned system that is taken for granted. It grows where a step shows a larger one.
-const START_EIGENVALUE: f32 = 2.5;
+const START_EIGENVALUE: f32 = 2.0;
 
 /// The pressure solver of one liquid; lengths in rest distances.
 #[derive(Debug, Default)]
@@ -127,6 +128,11 @@ impl Density {
         pool: &ThreadPool,
     ) {
         let diagonal = DisjointSlice::new(&mut self.diagonal);
+        let all_free = loads.iter().all(|load| load.inverse_mass == 1.0);
+        let mobility = |pair: &Pair| {
+            let [x, y, z] = pair.gradient();
+            loads[pair.other()].inverse_mass * (x * x + y * y + z * z)
+        };
         pool.parallel_for(loads.len().div_ceil(CHUNK as usize), |chunk| {
             let range = chunk_range(chunk, loads.len());
             // SAFETY: chunks do not overlap.
@@ -135,12 +141,12 @@ impl Density {
             for (k, out) in out.iter_mut().enumerate() {
                 let at = range.start as usize + k;
                 let own = neighbours.sum(at);
-                let mut sum = loads[at].inverse_mass * (own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
-                for pair in neighbours.of(chunk, k) {
-                    let [x, y, z] = pair.gradient;
-                    sum += loads[pair.other as usize].inverse_mass * (x * x + y * y + z * z);
-                }
-                *out = sum + walls.mobility(neighbours.walls_of(chunk, k)) + compliance;
+                let own = loads[at].inverse_mass * (own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+                let others = match all_free {
+                    true => neighbours.squares[at],
+                    false => neighbours.of(chunk, k).iter().map(mobility).sum(),
+                };
+                *out = own + others + walls.mobility(neighbours.walls_of(chunk, k)) + compliance;
             }
         });
     }
@@ -153,17 +159,13 @@ impl Density {
             // SAFETY: chunks do not overlap.
             #[allow(unsafe_code)]
             let out = unsafe { moved.run(range.clone()) };
+            let rows = range.start as usize..range.end as usize;
+            let (own, sums, loads) = (&ahead[rows.clone()], &neighbours.sums[rows.clone()], &loads[rows]);
+            neighbours.chunks[chunk].sum_pairs(|other| [ahead[other]; 4], out);
             for (k, out) in out.iter_mut().enumerate() {
-                let at = range.start as usize + k;
-                let (own, sum) = (ahead[at], neighbours.sum(at));
-                let mut push = [own * sum[0], own * sum[1], own * sum[2]];
-                for pair in neighbours.of(chunk, k) {
-                    let other = ahead[pair.other as usize];
-                    (0..3).for_each(|axis| push[axis] += other * pair.gradient[axis]);
-                }
-                let weight = -loads[at].inverse_mass;
-                let [x, y, z] = loads[at].moved;
-                *out = [x + push[0] * weight, y + push[1] * weight, z + push[2] * weight, 0.0];
+                let ([_, a, b, c], weight, [x, y, z]) = (sums[k], -loads[k].inverse_mass, loads[k].moved);
+                let push = |sum: f32, others: f32| (own[k] * sum + others) * weight;
+                *out = [x + push(a, out[0]), y + push(b, out[1]), z + push(c, out[2]), 0.0];
             }
         });
     }
@@ -189,26 +191,30 @@ impl Density {
                 (next.run(range.clone()), ahead.run(range.clone()), last.run(range.clone()), total)
             };
             let mut sums = Sums::default();
+            let rows = range.start as usize..range.end as usize;
+            let (own_moved, own_sums) = (&moved[rows.clone()], &neighbours.sums[rows.clone()]);
+            let (loads, diagonal, lambda) = (&loads[rows.clone()], &diagonal[rows.clone()], &lambda[rows]);
+            let walls_move = !walls.corners().is_empty();
+            let mut others = [[0.0; 4]; CHUNK as usize];
+            neighbours.chunks[chunk].sum_pairs(|other| moved[other], &mut others);
             for k in 0..next.len() {
-                let at = range.start as usize + k;
-                let (own, sum) = (moved[at], neighbours.sum(at));
-                let mut change = own[0] * sum[0] + own[1] * sum[1] + own[2] * sum[2];
-                for pair in neighbours.of(chunk, k) {
-                    let ([x, y, z, _], [a, b, c]) = (moved[pair.other as usize], pair.gradient);
-                    change -= x * a + y * b + z * c;
+                let (own, [_, x, y, z]) = (own_moved[k], own_sums[k]);
+                let mut change = own[0] * x + own[1] * y + own[2] * z;
+                change -= others[k][0] + others[k][1] + others[k][2];
+                if walls_move {
+                    change -= walls.change(neighbours.walls_of(chunk, k));
                 }
-                change -= walls.change(neighbours.walls_of(chunk, k));
-                let excess = loads[at].excess + change - step.compliance * ahead[k];
-                let weight = diagonal[at].max(1e-12);
+                let excess = loads[k].excess + change - step.compliance * ahead[k];
+                let weight = diagonal[k].max(1e-12);
                 let stepped = (ahead[k] + step.length * excess / weight).max(0.0);
                 let travel = ahead[k] - last[k][0];
                 sums.excess += excess.max(0.0);
-                sums.climb -= excess * (stepped - lambda[at]);
+                sums.climb -= excess * (stepped - lambda[k]);
                 sums.curvature += travel * (last[k][1] - excess);
                 sums.travel += travel * travel * weight;
                 last[k] = [ahead[k], excess];
                 next[k] = stepped;
-                ahead[k] = stepped + step.look * (stepped - lambda[at]);
+                ahead[k] = stepped + step.look * (stepped - lambda[k]);
             }
             total[0] = sums;
         });

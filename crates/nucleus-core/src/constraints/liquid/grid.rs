@@ -5,19 +5,12 @@
 //! length of the table. While the liquid is compact, A and B are the sizes of its bounding box, and no two cells share an
 //! entry; a spray that is scattered widely shares entries, and the distance test leaves foreign particles out.
 
+use std::ops::Range;
+
 /// Entries of the table per particle, at least.
 const ENTRIES: usize = 2;
 /// Least number of entries.
 const MIN_ENTRIES: usize = 128;
-
-/// A neighbour of a particle.
-#[derive(Debug, Clone, Copy)]
-pub struct Pair {
-    /// Derivative of the density of either by the position of the first, per rest distance.
-    pub gradient: [f32; 3],
-    /// The neighbour, in the sorted order.
-    pub other: u32,
-}
 
 /// Particles by cell.
 #[derive(Debug, Default)]
@@ -72,31 +65,33 @@ impl CellGrid {
         &self.order
     }
 
-    /// The runs of the sorted order that hold the neighbours of a place.
-    #[inline]
-    pub fn runs(&self, place: [f32; 3]) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
-        let [x, y, z] = self.cell(place);
-        (0..9u32).flat_map(move |k| {
+    /// Visits the runs of the sorted order that hold what is in a cell and in those about it.
+    #[inline(always)]
+    pub fn visit_runs(&self, [x, y, z]: [u32; 3], mut visit: impl FnMut(Range<usize>)) {
+        let mut run = |first: u32, last: u32| {
+            let [start, end] = [first, last + 1].map(|entry| self.starts[entry as usize] as usize);
+            if start < end {
+                visit(start..end);
+            }
+        };
+        for k in 0..9 {
             let row = self.entry(
                 x.wrapping_sub(1),
                 y.wrapping_add(k % 3).wrapping_sub(1),
                 z.wrapping_add(k / 3).wrapping_sub(1),
             );
             let last = row + 2;
+            run(row, last.min(self.mask));
             // A row of three cells may pass the end of the table.
-            let wraps = last > self.mask;
-            let first = self.run(row, last.min(self.mask));
-            let rest = if wraps { self.run(0, last - self.mask - 1) } else { 0..0 };
-            [first, rest]
-        })
+            if last > self.mask {
+                run(0, last - self.mask - 1);
+            }
+        }
     }
 
-    fn run(&self, first: u32, last: u32) -> std::ops::Range<usize> {
-        self.starts[first as usize] as usize..self.starts[last as usize + 1] as usize
-    }
-
+    /// The cell of a place.
     #[inline]
-    fn cell(&self, place: [f32; 3]) -> [u32; 3] {
+    pub fn cell(&self, place: [f32; 3]) -> [u32; 3] {
         std::array::from_fn(|axis| {
             let cells = (place[axis] - self.low[axis]) * self.per_cell;
             // Rounded down; beyond 2³¹ cells a spray shares them.
@@ -169,12 +164,9 @@ mod tests {
             for (at, place) in positions.iter().enumerate() {
                 let near =
                     |other: &[f32; 3]| (0..3).map(|k| (place[k] - other[k]).powi(2)).sum::<f32>() < 1.0;
-                let mut found: Vec<u32> = grid
-                    .runs(*place)
-                    .flatten()
-                    .map(|k| grid.order()[k])
-                    .filter(|&k| near(&positions[k as usize]))
-                    .collect();
+                let mut found = Vec::new();
+                grid.visit_runs(grid.cell(*place), |run| found.extend_from_slice(&grid.order()[run]));
+                found.retain(|&k| near(&positions[k as usize]));
                 found.sort_unstable();
                 let expected: Vec<u32> =
                     (0..count as u32).filter(|&k| near(&positions[k as usize])).collect();

@@ -13,7 +13,7 @@
 //! | You want to know… | Read |
 //! |---|---|
 //! | the kernel, and that of a half-space | [`kernel`] |
-//! | neighbour search | [`grid`], [`neighbours`] |
+//! | neighbour search | [`grid`], [`neighbours`], [`near`], [`pair`] |
 //! | density, and the solver of pressure | [`density`] |
 //! | ground plane, colliders and cloth beside a liquid | [`walls`] |
 //! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
@@ -21,7 +21,9 @@
 pub mod density;
 pub mod grid;
 pub mod kernel;
+pub mod near;
 pub mod neighbours;
+pub mod pair;
 pub mod surface_tension;
 pub mod viscosity;
 pub mod walls;

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use crate::math::{Lanes, Real};
+use crate::math::{Lanes, Real, Two};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
-use super::grid::{CellGrid, Pair};
-use super::kernel::{REACH, slope, weight};
+use super::grid::CellGrid;
+use super::kernel::{REACH, weight};
+use super::near::{LANES, Sorted, Surroundings, far_position};
+use super::pair::Pair;
 use super::walls::Walls;
 
 /// Particles of a task.
@@ -22,33 +24,7 @@ pub struct Chunk {
     /// Pairs with walls that can move, and the end of each particle's.
     wall_pairs: Vec<Pair>,
     wall_ends: Vec<u32>,
-    /// Particles within reach of one, itself among them, by their places in the sorted order.
-    near: Vec<u32>,
-}
-
-/// Four distances of a particle.
-type Four = <f32 as Real>::Lanes;
-/// The lanes of each mask of four, in order; what follows them is overwritten.
-const LANES: [[u32; 4]; 16] = lanes_of_masks();
-
-/// The number of lanes of each mask.
-const COUNTS: [usize; 16] = [0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4];
-
-const fn lanes_of_masks() -> [[u32; 4]; 16] {
-    let mut table = [[0; 4]; 16];
-    let mut mask = 0;
-    while mask < 16 {
-        let (mut lane, mut count) = (0, 0);
-        while lane < 4 {
-            if mask >> lane & 1 == 1 {
-                table[mask][count] = lane;
-                count += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
+    surroundings: Surroundings,
 }
 
 /// The neighbours of all particles; lengths in rest distances.
@@ -56,14 +32,16 @@ const fn lanes_of_masks() -> [[u32; 4]; 16] {
 pub struct Neighbours {
     /// Particles by cell.
     pub grid: CellGrid,
-    /// Positions in the sorted order.
+    /// Positions in the sorted order; the fourth is the tag of the particle's own number. One more is far from all.
     pub positions: Vec<[f32; 4]>,
-    /// The same by axis, with three more places at the end.
+    /// The same by axis, with seven more.
     columns: [Vec<f32>; 3],
     /// Pairs by task.
     pub chunks: Vec<Chunk>,
     /// Density of each particle, and the sum of the gradients of its pairs and walls.
     pub sums: Vec<[f32; 4]>,
+    /// The sum of the squared gradients of its pairs.
+    pub squares: Vec<f32>,
 }
 
 /// The particles of a task.
@@ -77,31 +55,38 @@ impl Neighbours {
     pub fn find(&mut self, positions: &[[f32; 3]], walls: &Walls, pool: &ThreadPool) {
         self.grid.sort(positions, REACH);
         self.positions.clear();
-        let sorted = self.grid.order().iter().map(|&particle| positions[particle as usize]);
-        self.positions.extend(sorted.map(|[x, y, z]| [x, y, z, 0.0]));
+        self.positions.extend(self.grid.order().iter().zip(0..).map(|(&particle, at)| {
+            let [x, y, z] = positions[particle as usize];
+            [x, y, z, Pair::tag(at)]
+        }));
         for (axis, column) in self.columns.iter_mut().enumerate() {
             column.clear();
             column.extend(self.positions.iter().map(|place| place[axis]));
-            column.resize(positions.len() + 3, 0.0);
+            column.resize(positions.len() + LANES, far_position()[axis]);
         }
+        self.positions.push(far_position());
         let count = positions.len();
         self.chunks.resize_with(count.div_ceil(CHUNK as usize), Chunk::default);
-        self.sums.clear();
         self.sums.resize(count, [0.0; 4]);
+        self.squares.resize(count, 0.0);
         let (chunks, sums) = (DisjointSlice::new(&mut self.chunks), DisjointSlice::new(&mut self.sums));
-        let (grid, positions, columns) = (&self.grid, &self.positions, &self.columns);
+        let squares = DisjointSlice::new(&mut self.squares);
+        let positions = &self.positions[..];
+        let sorted = Sorted { grid: &self.grid, positions, columns: &self.columns };
         pool.parallel_for(count.div_ceil(CHUNK as usize), |task| {
             let range = chunk_range(task, count);
             // SAFETY: chunks do not overlap.
             #[allow(unsafe_code)]
-            let (chunk, sums) =
-                unsafe { (&mut chunks.run(task as u32..task as u32 + 1)[0], sums.run(range.clone())) };
-            chunk.find(grid, (positions, columns), range.clone(), sums);
+            let (chunk, sums, squares) = unsafe {
+                let chunk = &mut chunks.run(task as u32..task as u32 + 1)[0];
+                (chunk, sums.run(range.clone()), squares.run(range.clone()))
+            };
+            chunk.find(sorted, range.clone(), (sums, squares));
             chunk.find_walls(walls, &positions[range.start as usize..range.end as usize], sums);
         });
     }
 
-    /// The pairs of a particle: the `k`th of a chunk.
+    /// The pairs of a particle: the `k`th of a chunk. Their number is a multiple of four.
     #[inline(always)]
     pub fn of(&self, chunk: usize, k: usize) -> &[Pair] {
         &self.chunks[chunk].pairs[self.range(chunk, k)]
@@ -131,7 +116,7 @@ impl Neighbours {
 
     /// The number of particles.
     pub fn len(&self) -> usize {
-        self.positions.len()
+        self.sums.len()
     }
 
     /// The sum of the gradients of a particle.
@@ -143,58 +128,93 @@ impl Neighbours {
 }
 
 impl Chunk {
-    fn find(
-        &mut self,
-        grid: &CellGrid,
-        (positions, columns): (&[[f32; 4]], &[Vec<f32>; 3]),
-        range: Range<u32>,
-        sums: &mut [[f32; 4]],
-    ) {
+    fn find(&mut self, sorted: Sorted<'_>, range: Range<u32>, out: (&mut [[f32; 4]], &mut [f32])) {
         self.pairs.clear();
         self.ends.clear();
-        for (at, out) in range.zip(sums) {
-            let [x, y, z, _] = positions[at as usize];
-            let near = self.find_near(grid, columns, [x, y, z]);
-            let mut sum = [weight(0.0), 0.0, 0.0, 0.0];
-            let others = self.near[..near].iter().filter(|&&other| other != at);
-            self.pairs.extend(others.map(|&other| {
-                let place = positions[other as usize];
-                let apart = [x - place[0], y - place[1], z - place[2]];
-                let distance = (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]).sqrt();
-                // Two particles in one place have no direction: they part along that of the others.
-                let scale = if distance > 1e-6 { slope(distance) / distance } else { 0.0 };
-                let gradient = [apart[0] * scale, apart[1] * scale, apart[2] * scale];
-                sum[0] += weight(distance);
-                (0..3).for_each(|axis| sum[axis + 1] += gradient[axis]);
-                Pair { gradient, other }
-            }));
+        self.surroundings.clear();
+        #[cfg(target_arch = "x86_64")]
+        if f32::has_wide_lanes() {
+            // SAFETY: the machine has AVX2.
+            #[allow(unsafe_code)]
+            return unsafe { self.find_avx2(sorted, range, out) };
+        }
+        self.find_lanes::<Two<<f32 as Real>::Lanes>>(sorted, range, out);
+    }
+
+    /// # Safety
+    /// The machine has AVX2.
+    #[cfg(target_arch = "x86_64")]
+    #[allow(unsafe_code)]
+    #[target_feature(enable = "avx2")]
+    unsafe fn find_avx2(
+        &mut self,
+        sorted: Sorted<'_>,
+        range: Range<u32>,
+        out: (&mut [[f32; 4]], &mut [f32]),
+    ) {
+        self.find_lanes::<<f32 as Real>::Wide>(sorted, range, out);
+    }
+
+    #[inline(always)]
+    fn find_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
+        &mut self,
+        sorted: Sorted<'_>,
+        range: Range<u32>,
+        (sums, squares): (&mut [[f32; 4]], &mut [f32]),
+    ) {
+        for (at, (out, square)) in range.zip(sums.iter_mut().zip(squares)) {
+            let found = self.surroundings.find::<W>(sorted, at, &mut self.pairs);
             self.ends.push(self.pairs.len() as u32);
-            *out = sum;
+            *out = found.density;
+            out[0] += weight(0.0);
+            *square = found.squares;
         }
     }
 
-    /// Lists the particles within reach of a place, four at a time. Returns their number.
-    fn find_near(&mut self, grid: &CellGrid, columns: &[Vec<f32>; 3], place: [f32; 3]) -> usize {
-        let (at, reach) = (place.map(Four::splat), Four::splat(REACH * REACH));
-        let mut near = 0;
-        for run in grid.runs(place) {
-            // Four are written at a time, and those that are too far overwritten: this needs no branch.
-            if self.near.len() < near + run.len() + 4 {
-                self.near.resize(near + run.len() + 4, 0);
-            }
-            for first in run.clone().step_by(4) {
-                let apart = |axis: usize| at[axis] - four(&columns[axis], first);
-                let [x, y, z] = [apart(0), apart(1), apart(2)];
-                let within = (reach - (x * x + y * y + z * z)).above_zero();
-                let mask = within & (0xf >> 4usize.saturating_sub(run.end - first));
-                let lanes = &LANES[mask as usize];
-                for (slot, lane) in self.near[near..near + 4].iter_mut().zip(lanes) {
-                    *slot = first as u32 + lane;
-                }
-                near += COUNTS[mask as usize];
-            }
+    /// For every particle of the chunk, the sum over its pairs of the gradient times what belongs to the neighbour, axis by
+    /// axis.
+    #[inline(always)]
+    pub fn sum_pairs(&self, of: impl Fn(usize) -> [f32; 4], out: &mut [[f32; 4]]) {
+        #[cfg(target_arch = "x86_64")]
+        if f32::has_wide_lanes() {
+            // SAFETY: the machine has AVX2.
+            #[allow(unsafe_code)]
+            return unsafe { self.sum_pairs_avx2(of, out) };
         }
-        near
+        self.sum_pairs_lanes::<Two<<f32 as Real>::Lanes>>(of, out);
+    }
+
+    /// # Safety
+    /// The machine has AVX2.
+    #[cfg(target_arch = "x86_64")]
+    #[allow(unsafe_code)]
+    #[target_feature(enable = "avx2")]
+    unsafe fn sum_pairs_avx2(&self, of: impl Fn(usize) -> [f32; 4], out: &mut [[f32; 4]]) {
+        self.sum_pairs_lanes::<<f32 as Real>::Wide>(of, out);
+    }
+
+    #[inline(always)]
+    fn sum_pairs_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
+        &self,
+        of: impl Fn(usize) -> [f32; 4],
+        out: &mut [[f32; 4]],
+    ) {
+        let mut first = 0;
+        for (&end, out) in self.ends.iter().zip(out) {
+            let (fours, rest) = self.pairs[first..end as usize].as_chunks::<4>();
+            debug_assert!(rest.is_empty(), "pairs are a multiple of four");
+            first = end as usize;
+            // Two sums of two pairs at once: each addition would wait for the one before.
+            let mut sums = [W::splat(0.0); 2];
+            for [a, b, c, d] in fours {
+                let term = |[a, b]: [&Pair; 2]| {
+                    W::from_array([a.row(), b.row()]) * W::from_array([of(a.other()), of(b.other())])
+                };
+                sums = [sums[0] + term([a, b]), sums[1] + term([c, d])];
+            }
+            let [[a, b], [c, d]] = sums.map(W::to_array);
+            *out = std::array::from_fn(|axis| (a[axis] + b[axis]) + (c[axis] + d[axis]));
+        }
     }
 
     fn find_walls(&mut self, walls: &Walls, positions: &[[f32; 4]], sums: &mut [[f32; 4]]) {
@@ -204,16 +224,69 @@ impl Chunk {
             walls.near([*x, *y, *z], |density, gradient, sample| {
                 sum[0] += density;
                 (0..3).for_each(|axis| sum[axis + 1] += gradient[axis]);
-                self.wall_pairs.extend(sample.map(|other| Pair { gradient, other }));
+                self.wall_pairs.extend(sample.map(|other| Pair::new(gradient, other)));
             });
             self.wall_ends.push(self.wall_pairs.len() as u32);
         }
     }
 }
 
-/// Four numbers of a column from a place on.
-#[inline(always)]
-fn four(column: &[f32], first: usize) -> Four {
-    let four = &column[first..first + 4];
-    Four::from_array([four[0], four[1], four[2], four[3]])
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Places without a pattern in a box, two of them equal.
+    fn scattered(count: usize, size: f32) -> Vec<[f32; 3]> {
+        let mut seed = 1u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32 * size
+        };
+        let mut places: Vec<_> = (0..count).map(|_| [next(), next(), next()]).collect();
+        places[count - 1] = places[0];
+        places
+    }
+
+    fn found(positions: &[[f32; 3]]) -> Neighbours {
+        let mut neighbours = Neighbours::default();
+        neighbours.find(positions, &Walls::default(), &ThreadPool::new(1));
+        neighbours
+    }
+
+    #[test]
+    fn pairs_and_densities_are_those_of_all_particles_within_reach() {
+        for (count, size) in [(2, 0.1), (700, 5.0), (300, 40.0), (300, 1e5)] {
+            let neighbours = found(&scattered(count, size));
+            for (at, place) in neighbours.positions[..count].iter().enumerate() {
+                let distance = |other: usize| {
+                    let other = neighbours.positions[other];
+                    (0..3).map(|k| (place[k] - other[k]).powi(2)).sum::<f32>().sqrt()
+                };
+                let all = neighbours.of(at / CHUNK as usize, at % CHUNK as usize);
+                assert_eq!(all.len() % 4, 0);
+                assert!(all.iter().flat_map(Pair::row).all(f32::is_finite));
+                let mut others: Vec<_> = all.iter().map(Pair::other).filter(|&other| other != at).collect();
+                others.sort_unstable();
+                let near = |other: &usize| *other != at && distance(*other) < REACH;
+                assert_eq!(others, (0..count).filter(near).collect::<Vec<_>>(), "{at} of {count} in {size}");
+                let density = weight(0.0) + others.iter().map(|&other| weight(distance(other))).sum::<f32>();
+                assert!((neighbours.sums[at][0] / density - 1.0).abs() < 1e-4, "{at} of {count} in {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn eight_lanes_give_the_bits_of_four() {
+        let neighbours = found(&scattered(700, 5.0));
+        let (positions, columns) = (&neighbours.positions[..], &neighbours.columns);
+        let sorted = Sorted { grid: &neighbours.grid, positions, columns };
+        let mut chunk = Chunk::default();
+        let (mut sums, mut squares) = (vec![[0.0; 4]; 256], vec![0.0; 256]);
+        chunk.find_lanes::<Two<<f32 as Real>::Lanes>>(sorted, 256..512, (&mut sums, &mut squares));
+        assert_eq!((&sums[..], &squares[..]), (&neighbours.sums[256..512], &neighbours.squares[256..512]));
+        let [mut four, mut eight] = [vec![[0.0; 4]; 256], vec![[0.0; 4]; 256]];
+        chunk.sum_pairs_lanes::<Two<<f32 as Real>::Lanes>>(|other| positions[other], &mut four);
+        neighbours.chunks[1].sum_pairs(|other| positions[other], &mut eight);
+        assert!(four.iter().zip(&eight).all(|(a, b)| a[..3] == b[..3]));
+    }
 }

@@ -33,10 +33,10 @@ pub fn acceleration(neighbours: &Neighbours, chunk: usize, k: usize, factors: &[
     let at = chunk_range(chunk, neighbours.len()).start as usize + k;
     let (place, mut sum) = (neighbours.positions[at], [0.0f32; 3]);
     for pair in neighbours.of(chunk, k) {
-        let other = neighbours.positions[pair.other as usize];
+        let other = neighbours.positions[pair.other()];
         let apart = [place[0] - other[0], place[1] - other[1], place[2] - other[2]];
         let distance = (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]).sqrt();
-        let pull = -cohesion(distance) / distance.max(1e-3) * pair_factor(factors, [at, pair.other as usize]);
+        let pull = -cohesion(distance) / distance.max(1e-3) * pair_factor(factors, [at, pair.other()]);
         (0..3).for_each(|axis| sum[axis] += pull * apart[axis]);
     }
     sum

@@ -84,12 +84,12 @@ impl Viscosity {
             for (k, at) in chunk_range(chunk, count).enumerate() {
                 let place = neighbours.positions[at as usize];
                 out.extend(neighbours.of(chunk, k).iter().map(|pair| {
-                    let (other, [a, b, c]) = (neighbours.positions[pair.other as usize], pair.gradient);
+                    let (other, [a, b, c]) = (neighbours.positions[pair.other()], pair.gradient());
                     let apart = [place[0] - other[0], place[1] - other[1], place[2] - other[2]];
                     let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
                     // The gradient is W' times the direction: divided by the distance, it is along `apart` squared.
                     let weight = -2.0 * (a * apart[0] + b * apart[1] + c * apart[2]) / square.max(1e-4);
-                    rate * weight * pair_factor(factors, [at as usize, pair.other as usize])
+                    rate * weight * pair_factor(factors, [at as usize, pair.other()])
                 }));
             }
         });
@@ -115,7 +115,7 @@ fn multiply(
             let mut sum = own;
             let weights = &weights[chunk][neighbours.range(chunk, k)];
             for (pair, &weight) in neighbours.of(chunk, k).iter().zip(weights) {
-                let other = x[pair.other as usize];
+                let other = x[pair.other()];
                 (0..4).for_each(|lane| sum[lane] += weight * (own[lane] - other[lane]));
             }
             *out = sum;

@@ -9,8 +9,9 @@
 
 use std::f32::consts::PI;
 
-use super::grid::{CellGrid, Pair};
+use super::grid::CellGrid;
 use super::kernel::{REACH, half_space, weight};
+use super::pair::Pair;
 
 /// How far behind a surface the liquid begins that it counts as: the layers of particles beside it weigh as much as a
 /// half-space that begins there.
@@ -165,8 +166,8 @@ impl Walls {
     #[inline]
     pub fn mobility(&self, pairs: &[Pair]) -> f32 {
         let of = |pair: &Pair| {
-            let [x, y, z] = pair.gradient;
-            let sample = &self.moving.samples[pair.other as usize];
+            let [x, y, z] = pair.gradient();
+            let sample = &self.moving.samples[pair.other()];
             let masses = sample.corners.into_iter().flatten().zip(sample.shares);
             let mobility: f32 = masses
                 .map(|(corner, share)| share * share * self.corners[corner as usize].inverse_mass)
@@ -180,7 +181,7 @@ impl Walls {
     #[inline]
     pub fn change(&self, pairs: &[Pair]) -> f32 {
         let of = |pair: &Pair| {
-            let ([x, y, z], [a, b, c]) = (self.moved[pair.other as usize], pair.gradient);
+            let ([x, y, z], [a, b, c]) = (self.moved[pair.other()], pair.gradient());
             x * a + y * b + z * c
         };
         pairs.iter().map(of).sum()
@@ -194,11 +195,12 @@ impl Walls {
         self.corners.iter_mut().for_each(|corner| corner.moved = [0.0; 3]);
         for (lambda, pairs) in pushes {
             for pair in pairs {
-                let sample = self.moving.samples[pair.other as usize];
+                let gradient = pair.gradient();
+                let sample = self.moving.samples[pair.other()];
                 for (corner, share) in sample.corners.into_iter().flatten().zip(sample.shares) {
                     let corner = &mut self.corners[corner as usize];
                     let push = lambda * share * corner.inverse_mass;
-                    (0..3).for_each(|axis| corner.moved[axis] += push * pair.gradient[axis]);
+                    (0..3).for_each(|axis| corner.moved[axis] += push * gradient[axis]);
                 }
             }
         }
@@ -306,7 +308,7 @@ impl Samples {
         if self.samples.is_empty() {
             return;
         }
-        for run in self.grid.runs(place) {
+        self.grid.visit_runs(self.grid.cell(place), |run| {
             for k in run {
                 let [x, y, z, limit] = self.sorted[k];
                 let apart = [place[0] - x, place[1] - y, place[2] - z];
@@ -318,7 +320,7 @@ impl Samples {
                     add(density, apart.map(|x| x * slope), sample.corners.map(|_| at));
                 }
             }
-        }
+        });
     }
 }
 
