@@ -179,9 +179,16 @@ impl<'a> Compiler<'a> {
             BuildError::BadMass { mass } => {
                 format!("`pointMass` of `{object}` must be above 0, found {mass}")
             }
+            BuildError::NoPoints if object == mesh => {
+                format!("`{object}` has no particles: nothing lists, fills or emits them")
+            }
             error => format!("`{object}` cannot be made from `{mesh}`: {error}"),
         };
-        self.findings.error(&place, message);
+        let has_particles = *error != BuildError::NoPoints || object != mesh;
+        let error = self.findings.error(&place, message);
+        if !has_particles {
+            error.help("give it a `position`, a `maximumCorner`, a `fillMesh` or an emitter");
+        }
         None
     }
 

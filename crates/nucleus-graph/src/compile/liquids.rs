@@ -68,14 +68,22 @@ impl EvaluationInterval<'_> {
 }
 
 impl Compiler<'_> {
-    /// Warns of a liquid that contact keeps from its rest distance, at the first frame.
-    pub(super) fn check_liquid(&mut self, node: NodeId) {
+    /// Reports a liquid without a rest distance, and warns of one that contact keeps from it, at the first frame. `None`
+    /// after an error.
+    pub(super) fn check_liquid(&mut self, node: NodeId) -> Option<()> {
         if !is_liquid(&self.start, node) {
-            return;
+            return Some(());
         }
         let graph = &self.scene.graph;
         let name = graph.node(node).name();
         let rest = rest_distance(&self.start, node);
+        if rest <= 0.0 {
+            let message =
+                format!("the liquid `{name}` has no rest distance: `radius` × `radiusScaleSPH` is 0");
+            let error = self.findings.error(&self.place(node, &n_particle::RADIUS.row), message);
+            error.help("give it a `radius` above 0");
+            return None;
+        }
         let radius = self.start.get(node, &n_particle::RADIUS);
         let width = match graph.is_given(node, &n_particle::COLLIDE_WIDTH_SCALE) {
             true => radius * self.start.get(node, &n_particle::COLLIDE_WIDTH_SCALE).max(0.0),
@@ -103,5 +111,6 @@ impl Compiler<'_> {
                 "leave out `collideWidthScale`: the liquid then touches walls with half of its rest distance";
             self.findings.warning(&place, message).help(help);
         }
+        Some(())
     }
 }

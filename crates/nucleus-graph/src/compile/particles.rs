@@ -26,7 +26,7 @@ impl Compiler<'_> {
         let places = surface.positions.clone();
         let surface = self.program.units.surface(surface);
         let recorded = self.recorded(id, None)?;
-        self.check_liquid(id);
+        self.check_liquid(id)?;
         let velocities = self.first_given(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
         let velocities = match self.plays_from_start(id) {
             true => Vec::new(),

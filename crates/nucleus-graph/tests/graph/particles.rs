@@ -86,7 +86,6 @@ fn the_attenuations_of_a_drag_field_are_speeds_in_scene_units() {
     assert!((magnitude - 4.0).abs() < 1e-6, "the field moves at 24 cm/s: {magnitude}");
 }
 
-// EVIDENCE: N1.2-11  the node of a liquid becomes one for the solver
 #[test]
 fn a_liquid_at_rest_overlaps_as_often_as_its_rest_density_says() {
     let nodes = r#""n": nucleus(spaceScale: 0.01), "q": nParticle(enableSPH: true, radius: 2, radiusScaleSPH: 0.5,
@@ -156,6 +155,19 @@ fn a_liquid_that_contact_keeps_from_its_rest_distance_is_warned_of() {
     ));
     let [high] = &of(", collideWidthScale: 1")[..] else { panic!() };
     assert!(high.contains("`collideWidthScale` keeps the liquid `q` 0.200 away from walls"), "{high}");
+}
+
+#[test]
+fn a_liquid_without_a_radius_and_particles_that_nothing_makes_are_errors() {
+    let errors = |fields: &str| {
+        let text = of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), "");
+        let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("it can be read");
+        let found = compile(&scene).expect_err("it is refused");
+        found.into_iter().map(|found| found.message).collect::<Vec<_>>()
+    };
+    let message = "the liquid `q` has no rest distance: `radius` × `radiusScaleSPH` is 0";
+    assert_eq!(errors("enableSPH: true, radius: 0, position: [(0, 1, 0)]"), [message]);
+    assert_eq!(errors(""), ["`q` has no particles: nothing lists, fills or emits them"]);
 }
 
 #[test]
