@@ -297,9 +297,11 @@ fn dam_break(across: usize, deep: usize, friction: f64) -> [Vec<[f64; 2]>; 2] {
         along.sort_unstable_by(f64::total_cmp);
         // Single drops run ahead of the front.
         front.push([time * 2.0f64.sqrt(), (along[count - count / 200] + spacing / 2.0) / a]);
-        // By the volume of the water that is within three particles of the wall.
-        let near_wall = places.iter().filter(|place| place.x < 3.0 * spacing).count();
-        height.push([time, near_wall as f64 * spacing / (3 * deep) as f64 / (2.0 * a)]);
+        // By the volume of the water that is near the wall: within three of sixteen particles.
+        let strip = 3.0 / 16.0 * a;
+        let near_wall = places.iter().filter(|place| place.x < strip).count();
+        let volume = near_wall as f64 * spacing.powi(3);
+        height.push([time, volume / (strip * deep as f64 * spacing) / (2.0 * a)]);
     }
     [front, height]
 }
@@ -317,10 +319,13 @@ fn errors(curve: &[[f64; 2]], measured: &[[f64; 2]]) -> Vec<f64> {
 #[test]
 #[ignore = "prints a measurement"]
 fn measure_dam_breaks() {
-    for (across, friction) in [(8, 0.0), (16, 0.0), (24, 0.0), (32, 0.0), (16, 0.3), (24, 0.3)] {
-        let [front, _] = dam_break(across, 6, friction);
+    for (across, friction) in
+        [(8, 0.0), (16, 0.0), (24, 0.0), (32, 0.0), (40, 0.0), (16, 0.3), (24, 0.3), (24, 1.0)]
+    {
+        let [front, height] = dam_break(across, 6, friction);
         let [faster, slower] = [&FRONT, &SLOWER_FRONT].map(|measured| errors(&front, measured));
-        println!("{across} across, friction {friction}: {faster:.3?} {slower:.3?}");
+        let height = errors(&height, &HEIGHT);
+        println!("{across} across, friction {friction}: {faster:.3?} {slower:.3?}, height {height:.3?}");
     }
 }
 
@@ -332,7 +337,8 @@ fn a_dam_breaks_as_measured() {
     println!("front {front:.3?}\nslower {slower:.3?}\nheight {height:.3?}");
     assert!(front.iter().all(|error| error.abs() < 0.1), "front {front:?}");
     assert!(height.iter().all(|error| error.abs() < 0.1), "height {height:?}");
-    // At T = 2.72, where the two experiments differ by 9 %, the slower one is missed by 13 %.
+    // At T = 2.72, where the two experiments differ by 9 %, the slower one is missed by 14 %, at 40 particles across by 10.5 %.
+    // Friction of the ground of at least 0.3 would bring it below 10 %, but no experiment gives that coefficient.
     let mean = slower.iter().map(|error| error.abs()).sum::<f64>() / slower.len() as f64;
     let beyond = slower.iter().filter(|error| error.abs() > 0.1).count();
     assert!(mean < 0.1 && beyond <= 1, "front of Koshizuka & Oka {slower:?}");
