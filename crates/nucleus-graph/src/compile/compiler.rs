@@ -180,15 +180,11 @@ impl<'a> Compiler<'a> {
                 format!("`pointMass` of `{object}` must be above 0, found {mass}")
             }
             BuildError::NoPoints if object == mesh => {
-                format!("`{object}` has no particles: nothing lists, fills or emits them")
+                format!("`{object}` has no particles, as none of its emitters can be used")
             }
             error => format!("`{object}` cannot be made from `{mesh}`: {error}"),
         };
-        let has_particles = *error != BuildError::NoPoints || object != mesh;
-        let error = self.findings.error(&place, message);
-        if !has_particles {
-            error.help("give it a `position`, a `maximumCorner`, a `fillMesh` or an emitter");
-        }
+        self.findings.error(&place, message);
         None
     }
 

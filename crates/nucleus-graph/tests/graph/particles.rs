@@ -158,16 +158,18 @@ fn a_liquid_that_contact_keeps_from_its_rest_distance_is_warned_of() {
 }
 
 #[test]
-fn a_liquid_without_a_radius_and_particles_that_nothing_makes_are_errors() {
-    let errors = |fields: &str| {
-        let text = of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), "");
+fn a_liquid_without_a_radius_and_particles_of_a_broken_emitter_are_errors() {
+    let errors = |nodes: &str| {
+        let text = of_nodes(&format!(r#""n": nucleus(), {nodes}"#), "");
         let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("it can be read");
         let found = compile(&scene).expect_err("it is refused");
         found.into_iter().map(|found| found.message).collect::<Vec<_>>()
     };
     let message = "the liquid `q` has no rest distance: `radius` × `radiusScaleSPH` is 0";
-    assert_eq!(errors("enableSPH: true, radius: 0, position: [(0, 1, 0)]"), [message]);
-    assert_eq!(errors(""), ["`q` has no particles: nothing lists, fills or emits them"]);
+    assert_eq!(errors(r#""q": nParticle(enableSPH: true, radius: 0, position: [(0, 1, 0)])"#), [message]);
+    let broken = r#""q": nParticle(), "m": mesh(file: "none.obj"),
+        "e": pointEmitter(target: "q", emitterType: surface, parent: "m")"#;
+    assert_eq!(errors(broken)[0], "`q` has no particles, as none of its emitters can be used");
 }
 
 #[test]
