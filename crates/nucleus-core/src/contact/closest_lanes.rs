@@ -135,6 +135,19 @@ mod tests {
         [by_lanes, alone]
     }
 
+    /// # Safety
+    ///
+    /// Needs a processor with AVX2.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    #[allow(unsafe_code)]
+    unsafe fn closest_avx2<const N: usize, const M: usize>(
+        x: [FourPositions; N],
+        q: [FourPositions; M],
+    ) -> ([Four; N], [Four; M]) {
+        closest(x, q)
+    }
+
     proptest! {
         #[test]
         fn four_points_and_faces_are_as_far_apart_as_each_pair_alone(p in position(), t in proptest::array::uniform3(position()), beside in -1.0..1.0f64) {
@@ -142,6 +155,19 @@ mod tests {
             prop_assert!((by_lanes - alone).abs() < 1e-9, "{by_lanes} {alone}");
             let [by_lanes, alone] = distances(t, [p], beside);
             prop_assert!((by_lanes - alone).abs() < 1e-9, "{by_lanes} {alone}");
+        }
+
+        #[test]
+        #[cfg(target_arch = "x86_64")]
+        fn lanes_have_the_same_bits_with_avx2(t in proptest::array::uniform4(proptest::array::uniform3(-2.0..2.0f64)), beside in -1.0..1.0f64) {
+            if std::arch::is_x86_feature_detected!("avx2") {
+                let four = |p: [f64; 3]| p.map(|p| Four::from_array([p, p * beside, beside - p, p + beside]));
+                let [p, a, b, c] = t.map(four);
+                // SAFETY: the processor has AVX2.
+                #[allow(unsafe_code)]
+                let with = unsafe { (closest_avx2([p], [a, b, c]), closest_avx2([p, a], [b, c])) };
+                prop_assert_eq!(with, (closest([p], [a, b, c]), closest([p, a], [b, c])));
+            }
         }
 
         #[test]
