@@ -72,7 +72,7 @@
 //! | `collider::broad_phase::WINDOW_STEPS` | 8 | life of an active set |
 //! | `collider::motion_bounds::TRAVEL_MARGIN` | 0.25 | of the predicted motion, for points that change course |
 //! | `collider::query::GROUP_SIZE` | 2 triangles | fastest on a drape: 55 ms a frame, 67 with eight |
-//! | `collider::contact::PLANE_VALIDITY` | t / 256 | error of a plane around an edge below 1e-5 t |
+//! | `collider::contact::PLANE_VALIDITY` | 1/256 of the rest gap | error of a plane around an edge below 1e-5 of it |
 //! | `collider::active_set::CERTIFIED_GAP` and `cloth::element_bounds::CERTIFIED_GAP` | 0.02 t | far above rounding error |
 //! | `collider::sweep::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
 //! | `collider::response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |

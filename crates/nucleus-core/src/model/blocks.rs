@@ -6,7 +6,7 @@ use crate::model::surface::Surface;
 
 /// Points per block, about.
 const POINTS_PER_BLOCK: usize = 1024;
-/// Points above which a cloth has two blocks.
+/// Points above which a cloth has at least two blocks.
 const MIN_SHARED_POINTS: usize = 512;
 
 /// The blocks of one cloth: runs of rows in the columns.

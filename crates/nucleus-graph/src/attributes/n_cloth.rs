@@ -136,7 +136,7 @@ node_table! {
         /// No point is farther from its nearest pins than the mesh reaches: cloth of many edges that hangs by pins stretches far less at the same `evaluations`. For cloth that hardly stretches.
         TETHERS: bool = toggle("tethers", "tethers", false).solved("nucleus_core::constraints::tether").extension();
         /// Whether points that `tethers` hold are linked over 4 and 16 edges towards their pins too. The links act when they
-        /// are tight, and hold cloth that is in motion, as in wind: a wave stretches it between points that tethers let go.
+        /// are tight, and hold cloth that moves, as in wind: tethers alone do not limit the distance between two points that are both near enough to a pin.
         LONG_LINKS: bool = toggle("longLinks", "longLinks", false).solved("nucleus_core::constraints::tether").extension();
         /// Factor on the lengths of tethers and long links: 1.02 lets a point go 2 % farther than the mesh reaches at rest.
         TETHER_SCALE: f64 = float("tetherScale", "tetherScale", 1.0).min(0.0).soft(1.0, 1.1).solved("nucleus_core::constraints::tether").extension();

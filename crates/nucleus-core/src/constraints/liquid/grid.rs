@@ -142,11 +142,11 @@ fn factors(cells: [f32; 3], mask: u32) -> [u32; 2] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// A spread of places without a pattern.
-    fn spread(count: usize, size: f32) -> Vec<[f32; 3]> {
+    pub fn spread(count: usize, size: f32) -> Vec<[f32; 3]> {
         let mut seed = 1u32;
         let mut next = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

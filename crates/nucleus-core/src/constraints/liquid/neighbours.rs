@@ -233,16 +233,12 @@ impl Chunk {
 
 #[cfg(test)]
 mod tests {
+    use super::super::grid::tests::spread;
     use super::*;
 
     /// Places without a pattern in a box, two of them equal.
     fn scattered(count: usize, size: f32) -> Vec<[f32; 3]> {
-        let mut seed = 1u32;
-        let mut next = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (seed >> 8) as f32 / (1 << 24) as f32 * size
-        };
-        let mut places: Vec<_> = (0..count).map(|_| [next(), next(), next()]).collect();
+        let mut places = spread(count, size);
         places[count - 1] = places[0];
         places
     }

@@ -146,7 +146,7 @@ pub(super) struct Selection<'a, R> {
 }
 
 impl<R: Real> Selection<'_, R> {
-    /// Selects the contacts that are active, in this order before they are sorted by task.
+    /// Selects the contacts that are active, task by task; within a task they keep this order.
     pub(super) fn select<const N: usize, const M: usize>(
         &self,
         contacts: &mut [ColliderContact<R, N, M>],

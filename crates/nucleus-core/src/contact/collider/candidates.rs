@@ -105,22 +105,28 @@ struct FourLines<const N: usize, const M: usize> {
 
 /// The planes of four contacts: normals rounded to the solver's scalar, and the offset for each point at the start and at
 /// the end of the candidate interval.
-struct FourPlanes<const N: usize> {
+struct CandidatePlanes<const N: usize> {
     normal: FourPositions,
     offsets: [[Four; N]; 2],
+}
+
+/// The pair of a lane; the first fills the lanes that are left.
+#[inline(always)]
+fn of_lane<T>(pairs: &[T], lane: usize) -> &T {
+    &pairs[if lane < pairs.len() { lane } else { 0 }]
 }
 
 /// Lengths in metres below which two elements touch.
 const TOUCHING: f64 = 1e-12;
 
 impl<const N: usize, const M: usize> FourPairs<N, M> {
-    /// Gathers up to four pairs; the first fills the lanes that are left.
+    /// Gathers up to four pairs.
     #[inline(always)]
     fn new<R: Real>(pairs: &[OverlappingPair<N, M>], step: &ColliderStep<'_, R>) -> Self {
         let (mut anchors, mut displacements) = ([[[0.0; 4]; 3]; N], [[[0.0; 4]; 3]; N]);
         let (mut from, mut to) = ([[[0.0; 4]; 3]; M], [[[0.0; 4]; 3]; M]);
         for lane in 0..4 {
-            let pair = &pairs[if lane < pairs.len() { lane } else { 0 }];
+            let pair = of_lane(pairs, lane);
             for k in 0..N {
                 let (anchor, moved) = (step.anchors[pair.points[k] as usize], step.start(pair.points[k]));
                 for axis in 0..3 {
@@ -186,7 +192,7 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
 
     /// The planes with these normals.
     #[inline(always)]
-    fn planes<R: Real>(&self, normal: FourPositions) -> FourPlanes<N> {
+    fn planes<R: Real>(&self, normal: FourPositions) -> CandidatePlanes<N> {
         // Rounds first, so that offset and direction belong together to the last bit.
         let normal = normal.map(|axis| Four::from_array(axis.to_array().map(|x| R::from_f64(x).to_f64())));
         let mut offsets = [[Four::splat(0.0); N]; 2];
@@ -200,14 +206,14 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
                 offsets[k] = highest - dot(normal, self.anchors[k]);
             }
         }
-        FourPlanes { normal, offsets }
+        CandidatePlanes { normal, offsets }
     }
 
     /// The smallest gap along each plane over the motion bounds, at the start and at the end of the candidate interval.
     #[inline(always)]
     fn min_gap<R: Real>(
         &self,
-        planes: &FourPlanes<N>,
+        planes: &CandidatePlanes<N>,
         window: [FourPositions; 2],
         pairs: &[OverlappingPair<N, M>],
         bounds: &MotionBounds<'_, R>,
@@ -216,7 +222,7 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
         for k in 0..N {
             let (mut low, mut high) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
             for lane in 0..4 {
-                let pair = &pairs[if lane < pairs.len() { lane } else { 0 }];
+                let pair = of_lane(pairs, lane);
                 let bound = bounds.of(pair.points[k]);
                 for axis in 0..3 {
                     low[axis][lane] = bound[0].0[axis].to_f64();

@@ -143,7 +143,7 @@ impl<R: Real> ColliderContacts<R> {
         let thickness = R::from_f64(material.thickness);
         let range = [material.adhesion_range, CERTIFIED_GAP].map(|range| thickness * R::from_f64(range));
         let selection = Selection { bounds, window, range, growth, depenetration, blocks };
-        // Two tasks of about the same length, with separate lists.
+        // Two tasks with separate lists.
         let points = Mutex::new((point_face, &mut active.points));
         let elements = Mutex::new((edge_edge, &mut active.edges, face_point, &mut active.faces));
         let all = |contacts: usize| 0..contacts as u32;
