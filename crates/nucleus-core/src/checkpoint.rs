@@ -386,7 +386,7 @@ checkpoint_struct!([R: Real] ColliderContacts<R> {
     columns: [],
     values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    rebuilt: [cloth, collider, is_near, by_point, active, searched_groups, tasks, unproven],
+    rebuilt: [cloth, collider, is_near, by_point, active, tasks, unproven],
 });
 
 checkpoint_struct!([R: Real] ClothContacts<R> {

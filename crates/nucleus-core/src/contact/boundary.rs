@@ -87,10 +87,14 @@ impl BoundaryElements {
 
     /// All elements in groups of `size` triangles. Free points form groups of their own, of as many.
     pub fn groups(&self, size: usize) -> impl Iterator<Item = ElementGroup> + '_ {
+        (0..self.group_count(size)).map(move |index| self.group(index, size))
+    }
+
+    /// The number of these groups.
+    pub fn group_count(&self, size: usize) -> usize {
         let in_faces = self.point_ends.last().map_or(0, |&end| end as usize);
         let free = self.live - in_faces;
-        let groups = self.triangles.len().div_ceil(size) + free.div_ceil(size);
-        (0..groups).map(move |index| self.group(index, size))
+        self.triangles.len().div_ceil(size) + free.div_ceil(size)
     }
 
     /// One of these groups, by its index.

@@ -42,7 +42,7 @@ pub struct Colouring {
 }
 
 /// Blocks of contacts between more than two, which run last, one after the other.
-const SERIAL: [u32; 2] = [u32::MAX; 2];
+pub const SERIAL: [u32; 2] = [u32::MAX; 2];
 
 impl Colouring {
     /// No tasks.

@@ -101,6 +101,23 @@ impl ThreadPool {
     }
 }
 
+/// Items per task of [`ThreadPool::least`].
+const ITEMS_PER_TASK: usize = 512;
+
+impl ThreadPool {
+    /// The least value of some items, infinity without any.
+    pub fn least<T: Sync>(&self, items: &[T], value: impl Fn(&T) -> f64 + Sync) -> f64 {
+        let least = Mutex::new(f64::INFINITY);
+        self.parallel_for(items.len().div_ceil(ITEMS_PER_TASK), |task| {
+            let own = items.chunks(ITEMS_PER_TASK).nth(task).unwrap_or_default();
+            let own = own.iter().map(&value).fold(f64::INFINITY, f64::min);
+            let mut least = least.lock().unwrap_or_else(PoisonError::into_inner);
+            *least = least.min(own);
+        });
+        least.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
 impl Drop for ThreadPool {
     fn drop(&mut self) {
         self.shared.closing.store(true, Ordering::SeqCst);

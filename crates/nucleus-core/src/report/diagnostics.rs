@@ -272,6 +272,7 @@ impl PointFigures {
 fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
     let Solver {
         state,
+        pool,
         contact: ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. },
         ..
     } = solver
@@ -279,14 +280,14 @@ fn smallest_cloth_gap<R: Real>(solver: &mut Solver<R>) -> f64 {
         return f64::INFINITY;
     };
     let ClothContacts { cache, materials, .. } = cloth_contacts;
-    let gap_ratio = cache.min_gap_ratio(&ClothStep::new(state, materials, material_maps, 0.0));
-    gap_ratio.map_or(f64::INFINITY, R::to_f64)
+    cache.min_gap_ratio(&ClothStep::new(state, materials, material_maps, 0.0), pool)
 }
 
 /// The smallest gap ratio to a collider or the ground plane, given that to the ground.
 fn smallest_gap<R: Real>(solver: &mut Solver<R>, ground_gap: f64, schedule: &Schedule<R>) -> f64 {
     let Solver {
         state,
+        pool,
         contact:
             ContactSystem {
                 collider_states, collider_contacts, collider_materials, material_maps, free_gap, ..
@@ -307,8 +308,7 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, ground_gap: f64, schedule: &Sch
             interval: list.interval,
         };
         let step = view.of(state, &collider_states[list.collider]);
-        let distances = list.point_face.iter().map(|pair| pair.gap_ratio(&step));
-        least = distances.fold(least, f64::min);
+        least = least.min(pool.least(&list.point_face, |contact| contact.gap_ratio(&step)));
     }
     least
 }

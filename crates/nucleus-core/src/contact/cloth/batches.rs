@@ -6,7 +6,7 @@ use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::contact::{Candidate, ClothContact, ClothStep};
 use crate::contact::cloth::search::RefreshKind;
 use crate::contact::colouring::{Colouring, Place, permute, task_key};
-use crate::math::{Real, Row4};
+use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
@@ -74,7 +74,7 @@ pub type Blocks<'a> = (&'a [u32], u32);
 
 /// What the lists are updated by, besides the candidates that a search has found.
 #[derive(Clone, Copy)]
-pub struct ListUpdate<'a, R> {
+pub struct ListUpdate<'a> {
     /// Points whose contacts are replaced.
     pub bounds_violated: &'a [bool],
     /// Which contacts the search has replaced.
@@ -83,12 +83,10 @@ pub struct ListUpdate<'a, R> {
     pub blocks: Blocks<'a>,
     /// Whether a point of each block violated its bound.
     pub has_violations: &'a [bool],
-    /// Anchors in metres, and displacements at the start of the time step.
-    pub start: (&'a [[f64; 3]], &'a [Row4<R>]),
 }
 
-impl<R: Real> ListUpdate<'_, R> {
-    fn keeps<const N: usize, const M: usize>(&self, contact: &ClothContact<R, N, M>) -> bool {
+impl ListUpdate<'_> {
+    fn keeps<R: Real, const N: usize, const M: usize>(&self, contact: &ClothContact<R, N, M>) -> bool {
         !contact.is_disabled() && !contact.points().iter().any(|&point| self.bounds_violated[point as usize])
     }
 }
@@ -106,6 +104,16 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         batches.into_iter().flat_map(|batch| &mut batch.list).filter(|contact| !contact.is_disabled())
     }
 
+    /// The smallest ratio of distance to contact thickness; infinite without contacts.
+    pub fn min_gap_ratio(&self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> f64 {
+        let ratio = |contact: &ClothContact<R, N, M>| match contact.is_disabled() {
+            true => f64::INFINITY,
+            false => contact.gap_ratio(step).to_f64(),
+        };
+        let batches = [&self.free_points, &self.initial, &self.incremental];
+        batches.map(|batch| pool.least(&batch.list, ratio)).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// The number of enabled contacts after an update.
     pub fn len(&self) -> usize {
         let batches = [&self.free_points, &self.initial, &self.incremental];
@@ -117,12 +125,18 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         self.iter_mut().for_each(|contact| contact.renumber(number));
     }
 
+    /// Before an incremental update: disables the contacts of points that violated their bounds where they are to stay in
+    /// place.
+    pub fn disable_violated(&mut self, update: &ListUpdate<'_>, pool: &ThreadPool) {
+        self.initial.disable_violated(update, pool);
+    }
+
     /// Removes the contacts of points that violated their bounds, and adds the candidates that a search has `found`. An
     /// incremental update leaves the initial batch in place.
     pub fn update<'a>(
         &mut self,
         found: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
-        update: &ListUpdate<'_, R>,
+        update: &ListUpdate<'_>,
         order: &mut Vec<Place>,
     ) {
         let Self { free_points, initial, incremental } = self;
@@ -132,14 +146,13 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         // By their points, so that the order of free points does not depend on that of earlier searches.
         free_points.merge(of(true), update, ClothContact::points);
         if update.refresh.is_incremental() {
-            initial.disable_violated(update);
             incremental.list.retain(|contact| update.keeps(contact));
             incremental.merge(of(false), update, |_| ());
         } else {
             initial.list.retain(|contact| update.keeps(contact));
             initial.list.extend(incremental.list.iter().filter(|contact| update.keeps(contact)));
             incremental.clear();
-            initial.add(of(false), update);
+            initial.add(of(false));
             initial.sort_by_task(update.blocks, order);
         }
     }
@@ -181,30 +194,35 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
     }
 
     /// Disables contacts of points that violated their bounds. Skips tasks between blocks without such points.
-    fn disable_violated(&mut self, update: &ListUpdate<'_, R>) {
-        let Self { list, disabled, colouring, .. } = self;
-        for (task, blocks) in colouring.tasks.iter().zip(&colouring.task_blocks) {
-            if blocks.iter().all(|&block| update.has_violations.get(block as usize) == Some(&false)) {
-                continue;
+    fn disable_violated(&mut self, update: &ListUpdate<'_>, pool: &ThreadPool) {
+        let Self { list, disabled, colouring: Colouring { tasks, task_blocks, .. }, .. } = self;
+        let (list, count) = (DisjointSlice::new(list), AtomicU64::new(0));
+        pool.parallel_for(tasks.len(), |task| {
+            if task_blocks[task]
+                .iter()
+                .all(|&block| update.has_violations.get(block as usize) == Some(&false))
+            {
+                return;
             }
-            let contacts = &mut list[task.start as usize..task.end as usize];
+            // SAFETY: the runs of two tasks do not overlap.
+            #[allow(unsafe_code)]
+            let contacts = unsafe { list.run(tasks[task].clone()) };
+            let mut disabled = 0;
             for contact in contacts {
                 if !contact.is_disabled() && !update.keeps(contact) {
                     contact.disable();
-                    *disabled += 1;
+                    disabled += 1;
                 }
             }
-        }
+            count.fetch_add(disabled, Ordering::Relaxed);
+        });
+        *disabled += count.into_inner() as usize;
     }
 
     /// Appends the contacts of candidates.
-    fn add<'a>(
-        &mut self,
-        candidates: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
-        update: &ListUpdate<'_, R>,
-    ) {
+    fn add<'a>(&mut self, candidates: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone) {
         self.reserve(candidates.clone().count());
-        self.list.extend(candidates.map(|candidate| ClothContact::new(candidate, update.start)));
+        self.list.extend(candidates.map(ClothContact::new));
     }
 
     fn reserve(&mut self, count: usize) {
@@ -240,7 +258,7 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
     fn merge<'a, K: Ord>(
         &mut self,
         candidates: impl Iterator<Item = &'a Candidate<R, N, M>> + Clone,
-        &ListUpdate { blocks: (block, blocks), start, .. }: &ListUpdate<'_, R>,
+        &ListUpdate { blocks: (block, blocks), .. }: &ListUpdate<'_>,
         order: impl Fn(&ClothContact<R, N, M>) -> K,
     ) {
         let task =
@@ -248,7 +266,7 @@ impl<R: Real, const N: usize, const M: usize> ContactBatch<R, N, M> {
         let key = |contact: &ClothContact<R, N, M>| (task(contact), order(contact));
         let mut incoming = std::mem::take(&mut self.incoming);
         incoming.clear();
-        incoming.extend(candidates.map(|candidate| ClothContact::new(candidate, start)));
+        incoming.extend(candidates.map(ClothContact::new));
         incoming.sort_by_key(key);
         self.reserve(incoming.len());
         let Self { list, colouring, .. } = self;

@@ -231,13 +231,8 @@ fn find_candidates<R: Real>(
     has_violations.resize(elements.blocks as usize, false);
     let violated = bounds_violated.iter().zip(&elements.block).filter(|(is_violated, _)| **is_violated);
     violated.for_each(|(_, &block)| has_violations[block as usize] = true);
-    let update = ListUpdate {
-        bounds_violated,
-        has_violations,
-        refresh,
-        blocks: (&elements.block, elements.blocks),
-        start: (input.anchors, input.displacement[0]),
-    };
+    let update =
+        ListUpdate { bounds_violated, has_violations, refresh, blocks: (&elements.block, elements.blocks) };
     cache.update(&tasks[..chunks], &update, orders, pool);
     bounds_violated.fill(false);
 }

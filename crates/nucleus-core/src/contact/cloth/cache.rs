@@ -47,11 +47,17 @@ impl<R: Real> ContactCache<R> {
     pub(super) fn update(
         &mut self,
         tasks: &[FoundContacts<R>],
-        update: &ListUpdate<'_, R>,
+        update: &ListUpdate<'_>,
         orders: &mut [Vec<Place>; 2],
         pool: &ThreadPool,
     ) {
         let Self { point_face, edge_edge, point_edge, point_point } = self;
+        if update.refresh.is_incremental() {
+            point_face.disable_violated(update, pool);
+            edge_edge.disable_violated(update, pool);
+            point_edge.disable_violated(update, pool);
+            point_point.disable_violated(update, pool);
+        }
         let [of_points, of_edges] = orders;
         // Two tasks of about the same length, with separate lists.
         let of_points = Mutex::new((point_face, point_point, of_points));
@@ -96,13 +102,14 @@ impl<R: Real> ContactCache<R> {
         limited as u64
     }
 
-    /// The smallest ratio of distance to contact thickness.
-    pub fn min_gap_ratio(&self, step: &ClothStep<'_, R>) -> Option<R> {
-        let pairs = self.point_face.iter().map(|contact| contact.gap_ratio(step));
-        let pairs = pairs.chain(self.edge_edge.iter().map(|contact| contact.gap_ratio(step)));
-        let pairs = pairs.chain(self.point_edge.iter().map(|contact| contact.gap_ratio(step)));
-        let pairs = pairs.chain(self.point_point.iter().map(|contact| contact.gap_ratio(step)));
-        pairs.reduce(|least, x| if x < least { x } else { least })
+    /// The smallest ratio of distance to contact thickness; infinite without contacts.
+    pub fn min_gap_ratio(&self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> f64 {
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        point_face
+            .min_gap_ratio(step, pool)
+            .min(edge_edge.min_gap_ratio(step, pool))
+            .min(point_edge.min_gap_ratio(step, pool))
+            .min(point_point.min_gap_ratio(step, pool))
     }
 
     /// One sweep. Point-face contacts go last, because they carry cloth on cloth most smoothly. Returns the

@@ -126,6 +126,8 @@ pub struct ContactParams<R> {
 pub struct Candidate<R, const N: usize, const M: usize> {
     /// Points of the one element and of the other, as rows of the solver.
     pub points: ElementPoints<N, M>,
+    /// Along the shortest line at the start of the time step, from theirs to ours.
+    pub normal: [R; 3],
     /// The parameters of their contact.
     pub params: ContactParams<R>,
 }
@@ -164,16 +166,10 @@ impl<R: Real, const N: usize, const M: usize> Encode for ClothContact<R, N, M> {
 }
 
 impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
-    /// A contact along the shortest line at the start of a time step. `start` holds displacements.
-    #[inline]
-    pub fn new(
-        &Candidate { points: (ours, theirs), params }: &Candidate<R, N, M>,
-        (origins, start): (&[[f64; 3]], &[Row4<R>]),
-    ) -> Self {
-        let [normal, friction_anchor] = [[R::ZERO; 3]; 2];
-        let mut contact = Self { ours, theirs, normal, friction_anchor, params };
-        contact.normal = shortest_line(contact.positions(origins, |point| start[point as usize].xyz())).0;
-        contact
+    /// The contact of a candidate, without a friction anchor.
+    pub fn new(candidate: &Candidate<R, N, M>) -> Self {
+        let Candidate { points: (ours, theirs), normal, params } = *candidate;
+        Self { ours, theirs, normal, friction_anchor: [R::ZERO; 3], params }
     }
 
     /// The positions of its points, in metres relative to the anchor of the first.
@@ -183,21 +179,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         origins: &[[f64; 3]],
         displacement: impl Fn(u32) -> [R; 3],
     ) -> ElementPositions<R, N, M> {
-        let first = origins[self.ours[0] as usize];
-        let position = |point: u32| {
-            let [x, y, z] = sub(origins[point as usize], first);
-            add([R::from_f64(x), R::from_f64(y), R::from_f64(z)], displacement(point))
-        };
-        // Loops, because maps over these arrays are not inlined.
-        let mut at = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
-        at.0[0] = displacement(self.ours[0]);
-        for k in 1..N {
-            at.0[k] = position(self.ours[k]);
-        }
-        for k in 0..M {
-            at.1[k] = position(self.theirs[k]);
-        }
-        at
+        positions((&self.ours, &self.theirs), origins, displacement)
     }
 
     #[inline(always)]
@@ -332,4 +314,28 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let (_, weights, distance) = shortest_line(self.end_positions(step));
         distance / self.rest_gap(step, &weights)
     }
+}
+
+/// The positions of the points of two elements, in metres relative to the anchor of the first.
+#[inline(always)]
+pub(super) fn positions<R: Real, const N: usize, const M: usize>(
+    (ours, theirs): (&[u32; N], &[u32; M]),
+    origins: &[[f64; 3]],
+    displacement: impl Fn(u32) -> [R; 3],
+) -> ElementPositions<R, N, M> {
+    let first = origins[ours[0] as usize];
+    let position = |point: u32| {
+        let [x, y, z] = sub(origins[point as usize], first);
+        add([R::from_f64(x), R::from_f64(y), R::from_f64(z)], displacement(point))
+    };
+    // Loops, because maps over these arrays are not inlined.
+    let mut at = ([[R::ZERO; 3]; N], [[R::ZERO; 3]; M]);
+    at.0[0] = displacement(ours[0]);
+    for k in 1..N {
+        at.0[k] = position(ours[k]);
+    }
+    for k in 0..M {
+        at.1[k] = position(theirs[k]);
+    }
+    at
 }

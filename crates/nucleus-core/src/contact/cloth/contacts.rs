@@ -90,7 +90,6 @@ impl<R: Real> ClothContacts<R> {
             has_violations: &[],
             refresh: RefreshKind::Full,
             blocks: (&elements.block, elements.blocks),
-            start: (&[], &[]),
         };
         cache.update(&[], &update, &mut buffers.orders, pool);
     }
@@ -137,20 +136,24 @@ impl<R: Real> ClothContacts<R> {
             groups.clear();
             groups.extend(0..elements.groups.len() as u32);
         }
-        groups.iter().for_each(|&group| elements.set_bound(group, bounds, margin));
-        elements.refit();
-        local_anchors.update(anchors, violated.clone(), elements.extent());
-        let group_bounds = DisjointSlice::new(group_bounds);
+        let mut swept_boxes = std::mem::take(&mut elements.swept_boxes);
+        let (boxes, group_bounds) = (DisjointSlice::new(&mut swept_boxes), DisjointSlice::new(group_bounds));
         pool.parallel_for(groups.len().div_ceil(GROUPS_PER_TASK), |task| {
             for &group in groups.chunks(GROUPS_PER_TASK).nth(task).unwrap_or_default() {
                 let ClothGroup { cloth, group: own } = &elements.groups[group as usize];
                 // SAFETY: a group is listed once.
                 #[allow(unsafe_code)]
-                if let [slot] = unsafe { group_bounds.run(group..group + 1) } {
-                    slot.fill(&input.cloths[*cloth as usize].boundary, own, bounds, margin);
+                unsafe {
+                    boxes.set(group, bounds.bound(elements.points_of(group as usize), margin));
+                    if let [slot] = group_bounds.run(group..group + 1) {
+                        slot.fill(&input.cloths[*cloth as usize].boundary, own, bounds, margin);
+                    }
                 }
             }
         });
+        elements.swept_boxes = swept_boxes;
+        elements.refit();
+        local_anchors.update(anchors, violated.clone(), elements.extent());
         elements.groups_of(violated, groups);
     }
 }

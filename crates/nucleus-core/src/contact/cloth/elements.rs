@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 use crate::bytes::checkpoint_struct;
 use crate::contact::boundary::ElementGroup;
 use crate::contact::bvh::{Aabb, Bvh, SweptBox};
-use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::math::Real;
 use crate::model::ClothModel;
 
@@ -123,11 +122,6 @@ impl ElementGroups {
             let all = self.points_of(group as usize).iter().all(|&point| has_new_bound[point as usize]);
             found[group as usize] = if all { NewBounds::All } else { NewBounds::Some };
         }
-    }
-
-    /// Sets the swept box of a group.
-    pub fn set_bound(&mut self, group: u32, bounds: &ElementBounds, margin: f32) {
-        self.swept_boxes[group as usize] = bounds.bound(self.points_of(group as usize), margin);
     }
 
     /// Refits the hierarchy to the swept boxes.

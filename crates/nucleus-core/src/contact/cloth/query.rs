@@ -1,12 +1,13 @@
 //! Broad-phase query of one element group against others: tests rows of swept boxes, then creates contacts.
 
 use crate::contact::box_row::BoxRow;
-use crate::contact::cloth::contact::{Candidate, ContactParams};
+use crate::contact::cloth::contact::{Candidate, ContactParams, positions};
 use crate::contact::cloth::elements::NewBounds;
 use crate::contact::cloth::new_elements::{NewElement, NewElements, NewRow};
-use crate::contact::cloth::search::{ClothSearch, SearchedGroup};
+use crate::contact::cloth::search::{ClothSearch, SearchInput, SearchedGroup};
 use crate::contact::cloth::swept_points::ElementPoints;
 use crate::contact::material::ContactMaterial;
+use crate::contact::narrow_phase::shortest_line;
 use crate::input::frame::Elements;
 use crate::math::Real;
 
@@ -109,6 +110,7 @@ impl<R: Real> ClothPair<'_, R> {
 
     fn find_contacts_of<const N: usize, const M: usize>(&self, found: &mut FoundPairs<R, N, M>) {
         let FoundPairs { candidates, overlapping } = found;
+        let known = candidates.len();
         let [thickness, range] = self.thickness_and_range;
         let (points, share) = (self.search.bounds.swept_points(), self.search.input.interval_share as f32);
         for four in overlapping.chunks(4) {
@@ -117,6 +119,11 @@ impl<R: Real> ClothPair<'_, R> {
             candidates.extend(near.filter_map(|(_, &pair)| self.contact(pair)));
         }
         overlapping.clear();
+        let SearchInput { anchors, displacement: [start, _], .. } = self.search.input;
+        for Candidate { points: (ours, theirs), normal, .. } in &mut candidates[known..] {
+            let at = positions((ours, theirs), anchors, |point| start[point as usize].xyz());
+            (*normal, ..) = shortest_line(at);
+        }
     }
 }
 
@@ -265,6 +272,6 @@ impl<'a, R: Real> ClothPair<'a, R> {
             has_free_point: (N == 1 && is_free(points.0[0])) || (M == 1 && is_free(points.1[0])),
             has_anchor: false,
         };
-        Some(Candidate { points, params })
+        Some(Candidate { points, normal: [R::ZERO; 3], params })
     }
 }

@@ -37,8 +37,6 @@ pub struct ColliderContacts<R> {
     pub by_point: Vec<u64>,
     /// The contacts that can touch within the next few time steps.
     pub active: ActiveSet<R>,
-    /// The groups of the last search.
-    pub searched_groups: Vec<u32>,
     /// The results of search tasks.
     pub tasks: Vec<Mutex<FoundContacts<R>>>,
     /// Points of the cloth that are inside the collider.
@@ -81,6 +79,16 @@ impl<R> Default for FoundContacts<R> {
     }
 }
 
+impl<R> FoundContacts<R> {
+    /// Removes all, keeps the capacity.
+    pub(super) fn clear(&mut self) {
+        self.point_face.contacts.clear();
+        self.edge_edge.contacts.clear();
+        self.face_point.contacts.clear();
+        self.suspects.clear();
+    }
+}
+
 impl<R: Real> ColliderContacts<R> {
     /// No contacts yet.
     pub fn new(cloth: usize, collider: usize) -> Self {
@@ -95,7 +103,6 @@ impl<R: Real> ColliderContacts<R> {
             face_point: Vec::new(),
             by_point: Vec::new(),
             active: ActiveSet::default(),
-            searched_groups: Vec::new(),
             tasks: Vec::new(),
             depenetration: Depenetration::default(),
             unproven: Vec::new(),
@@ -143,32 +150,16 @@ impl<R: Real> ColliderContacts<R> {
         let thickness = R::from_f64(material.thickness);
         let range = [material.adhesion_range, CERTIFIED_GAP].map(|range| thickness * R::from_f64(range));
         let selection = Selection { bounds, window, range, growth, depenetration, blocks };
-        // Two tasks with separate lists.
-        let points = Mutex::new((point_face, &mut active.points));
-        let elements = Mutex::new((edge_edge, &mut active.edges, face_point, &mut active.faces));
-        let all = |contacts: usize| 0..contacts as u32;
-        pool.parallel_for(2, |task| match task {
-            0 => {
-                let Ok(mut lists) = points.lock() else { return };
-                let (contacts, active) = &mut *lists;
-                selection.select(contacts, by_point.iter().map(|&key| key as u32), active);
-            }
-            _ => {
-                let Ok(mut lists) = elements.lock() else { return };
-                let (edges, active_edges, faces, active_faces) = &mut *lists;
-                let (all_edges, all_faces) = (all(edges.len()), all(faces.len()));
-                selection.select(edges, all_edges, active_edges);
-                selection.select(faces, all_faces, active_faces);
-            }
-        });
+        active.select(&selection, (point_face, by_point), edge_edge, face_point, pool);
+        self.copy_planes(pool);
     }
 
     /// Copies the planes of all active contacts to their columns.
-    pub(super) fn copy_planes(&mut self) {
+    pub(super) fn copy_planes(&mut self, pool: &ThreadPool) {
         let Self { point_face, edge_edge, face_point, active, .. } = self;
-        active.points.copy_planes(point_face);
-        active.edges.copy_planes(edge_edge);
-        active.faces.copy_planes(face_point);
+        active.points.copy_planes(point_face, pool);
+        active.edges.copy_planes(edge_edge, pool);
+        active.faces.copy_planes(face_point, pool);
     }
 }
 
@@ -191,7 +182,7 @@ pub fn certify<R: Real>(
     list.unproven.clear();
     list.unproven.extend(unproven.into_inner().unwrap_or_default());
     if has_new_plane.into_inner() {
-        list.copy_planes();
+        list.copy_planes(pool);
     }
     counts.map(AtomicU64::into_inner)
 }
@@ -249,6 +240,7 @@ impl Certification {
 pub fn revert_to_start<R: Real>(
     list: &mut ColliderContacts<R>,
     step: &ColliderStep<'_, R>,
+    pool: &ThreadPool,
     counters: &ContactCounters,
     freeze: &mut impl FnMut(u32),
 ) {
@@ -256,20 +248,21 @@ pub fn revert_to_start<R: Real>(
     revert_all(point_face, &active.points.indices, step, counters, freeze);
     revert_all(edge_edge, &active.edges.indices, step, counters, freeze);
     revert_all(face_point, &active.faces.indices, step, counters, freeze);
-    list.copy_planes();
+    list.copy_planes(pool);
 }
 
 /// Calls `mark` with the points of all active contacts without certificate.
 pub fn for_unproven_points<R: Real>(
     list: &mut ColliderContacts<R>,
     step: &ColliderStep<'_, R>,
+    pool: &ThreadPool,
     mark: &mut impl FnMut(u32),
 ) {
     let ColliderContacts { point_face, edge_edge, face_point, active, .. } = list;
     for_unproven_points_of(point_face, &active.points.indices, step, mark);
     for_unproven_points_of(edge_edge, &active.edges.indices, step, mark);
     for_unproven_points_of(face_point, &active.faces.indices, step, mark);
-    list.copy_planes();
+    list.copy_planes(pool);
 }
 
 fn for_unproven_points_of<R: Real, const N: usize, const M: usize>(

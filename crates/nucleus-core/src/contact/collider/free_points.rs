@@ -64,7 +64,7 @@ fn settle<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) -> bool {
         }
         points = unproven(pass, cloth, &points);
     }
-    for_contacts_of(pass, cloth, |list, _, _, _| list.copy_planes());
+    for_contacts_of(pass, cloth, |list, _, pool, _| list.copy_planes(pool));
     points.is_empty()
 }
 

@@ -89,7 +89,9 @@ pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
     let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
     let mut freeze =
         |point: u32| frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = true);
-    for_all_contacts(pass, |list, step, _, counters| revert_to_start(list, step, counters, &mut freeze));
+    for_all_contacts(pass, |list, step, pool, counters| {
+        revert_to_start(list, step, pool, counters, &mut freeze)
+    });
     if let Some(cloth_contacts) = &mut pass.contact.cloth_contacts {
         cloth_contacts.frozen = frozen;
     }
@@ -100,7 +102,7 @@ pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
 pub fn accept_unresolved_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
     let mut released = Vec::new();
     let mut mark = |point: u32| released.push(point);
-    for_all_contacts(pass, |list, step, _, _| for_unproven_points(list, step, &mut mark));
+    for_all_contacts(pass, |list, step, pool, _| for_unproven_points(list, step, pool, &mut mark));
     for point in released {
         pass.contact.bounds_violated[point as usize] = true;
         let cloth = pass.model.cloths.partition_point(|cloth| cloth.points().end <= point);

@@ -39,13 +39,9 @@ impl<R: Real, const N: usize> PlaneColumns<R, N> {
         &mut self.fours
     }
 
-    /// Adds a run of contacts, given by their indices. It starts a new four.
-    pub fn add_run<const M: usize>(&mut self, contacts: &[ColliderContact<R, N, M>], run: &[u32]) {
-        for indices in run.chunks(4) {
-            let mut four = FourPlanes::without_contacts(contacts[indices[0] as usize].points);
-            (0..).zip(indices).for_each(|(lane, &contact)| four.set(lane, &contacts[contact as usize]));
-            self.fours.push(four);
-        }
+    /// Makes room for this number of fours, whose contents do not matter.
+    pub fn resize(&mut self, fours: usize) {
+        self.fours.resize(fours, FourPlanes::without_contacts([0; N]));
     }
 }
 
@@ -57,6 +53,14 @@ impl<R: Real, const N: usize> FourPlanes<R, N> {
             normal: [[R::ZERO; 4]; 3],
             offset: [[-R::ONE / R::MIN_DENOMINATOR; 4]; N],
             change: [[R::ZERO; 4]; N],
+        }
+    }
+
+    /// Takes up a run of contacts, given by their indices.
+    pub fn copy_run<const M: usize>(fours: &mut [Self], contacts: &[ColliderContact<R, N, M>], run: &[u32]) {
+        for (four, indices) in fours.iter_mut().zip(run.chunks(4)) {
+            *four = Self::without_contacts(contacts[indices[0] as usize].points);
+            (0..).zip(indices).for_each(|(lane, &contact)| four.set(lane, &contacts[contact as usize]));
         }
     }
 
@@ -114,7 +118,8 @@ mod tests {
             let contacts: Vec<_> = (0..normals.len()).map(contact).collect();
             let all: Vec<u32> = (0..contacts.len() as u32).collect();
             let mut columns = PlaneColumns::default();
-            columns.add_run(&contacts, &all);
+            columns.resize(all.len().div_ceil(4));
+            FourPlanes::copy_run(columns.fours_mut(), &contacts, &all);
             for (at, four) in columns.fours_mut().iter().enumerate() {
                 let of_point = |point: u32| {
                     let [x, y, z] = rows[point as usize];

@@ -52,7 +52,20 @@ struct GroupBoxes<'a> {
 const GROUP_SIZE: usize = 2;
 
 /// Groups in a task.
-const GROUPS_PER_TASK: usize = 32;
+const GROUPS_PER_TASK: usize = 64;
+
+/// Calls `work` with the results of all tasks, in their order, so that the result does not depend on the threads.
+fn for_results<R>(tasks: &[Mutex<FoundContacts<R>>], mut work: impl FnMut(&FoundContacts<R>)) {
+    tasks.iter().filter_map(|task| task.lock().ok()).for_each(|found| work(&found));
+}
+
+/// Lists contacts by point, in the order in which they are listed: the point in the upper half, the index in the lower.
+fn sort_by_point<R>(contacts: &[ColliderContact<R, 1, 3>], by_point: &mut Vec<u64>) {
+    by_point.clear();
+    let key = |(index, contact): (u64, &ColliderContact<R, 1, 3>)| u64::from(contact.points[0]) << 32 | index;
+    by_point.extend((0..).zip(contacts).map(key));
+    by_point.sort_unstable();
+}
 
 impl<R: Real> ColliderQuery<'_, R> {
     /// Replaces the contacts of all elements with a new bound.
@@ -62,46 +75,44 @@ impl<R: Real> ColliderQuery<'_, R> {
             boundary.triangles[group.triangles.clone()].iter().any(|face| self.has_new_bound(face))
                 || self.has_new_bound(&boundary.points[group.points.clone()])
         };
-        let ColliderContacts {
-            searched_groups,
-            tasks,
-            point_face,
-            edge_edge,
-            face_point,
-            by_point,
-            depenetration,
-            ..
-        } = list;
-        searched_groups.clear();
-        let groups = (0..).zip(boundary.groups(GROUP_SIZE));
-        searched_groups.extend(groups.filter(|(_, group)| is_new(group)).map(|(index, _)| index));
-        point_face.retain(|contact| !self.has_new_bound(&contact.points));
-        edge_edge.retain(|contact| !self.has_new_bound(&contact.points));
-        face_point.retain(|contact| !self.has_new_bound(&contact.points));
+        let ColliderContacts { tasks, point_face, edge_edge, face_point, by_point, depenetration, .. } = list;
         let reach = self.reach();
-        let chunks = searched_groups.len().div_ceil(GROUPS_PER_TASK);
+        let groups = boundary.group_count(GROUP_SIZE);
+        let chunks = groups.div_ceil(GROUPS_PER_TASK);
         tasks.resize_with(tasks.len().max(chunks), Mutex::default);
         pool.parallel_for(chunks, |task| {
             // Uncontended: a task runs once.
             let Ok(mut found) = tasks[task].lock() else { return };
-            let end = ((task + 1) * GROUPS_PER_TASK).min(searched_groups.len());
-            searched_groups[task * GROUPS_PER_TASK..end]
-                .iter()
-                .for_each(|&group| self.search_group(group, &reach, &mut found));
+            found.clear();
+            let own = task * GROUPS_PER_TASK..((task + 1) * GROUPS_PER_TASK).min(groups);
+            let new = own.map(|index| boundary.group(index, GROUP_SIZE)).filter(is_new);
+            new.for_each(|group| self.search_group(&group, &reach, &mut found));
             self.find_contacts(&mut found);
         });
-        // In the order of the groups, so that the result does not depend on the threads.
-        for found in tasks[..chunks].iter_mut().filter_map(|task| task.get_mut().ok()) {
-            point_face.append(&mut found.point_face.contacts);
-            edge_edge.append(&mut found.edge_edge.contacts);
-            face_point.append(&mut found.face_point.contacts);
-            depenetration.suspects.append(&mut found.suspects);
-        }
-        by_point.clear();
-        let key =
-            |(index, contact): (u64, &ColliderContact<R, 1, 3>)| u64::from(contact.points[0]) << 32 | index;
-        by_point.extend((0..).zip(point_face.iter()).map(key));
-        by_point.sort_unstable();
+        let tasks = &tasks[..chunks];
+        for_results(tasks, |found| depenetration.suspects.extend_from_slice(&found.suspects));
+        let points = Mutex::new((point_face, by_point));
+        let (edges, faces) = (Mutex::new(edge_edge), Mutex::new(face_point));
+        // Uncontended: each list has a task of its own.
+        pool.parallel_for(3, |kind| match kind {
+            0 => {
+                let Ok(mut points) = points.lock() else { return };
+                let (points, by_point) = &mut *points;
+                points.retain(|contact| !self.has_new_bound(&contact.points));
+                for_results(tasks, |found| points.extend_from_slice(&found.point_face.contacts));
+                sort_by_point(points, by_point);
+            }
+            1 => {
+                let Ok(mut edges) = edges.lock() else { return };
+                edges.retain(|contact| !self.has_new_bound(&contact.points));
+                for_results(tasks, |found| edges.extend_from_slice(&found.edge_edge.contacts));
+            }
+            _ => {
+                let Ok(mut faces) = faces.lock() else { return };
+                faces.retain(|contact| !self.has_new_bound(&contact.points));
+                for_results(tasks, |found| faces.extend_from_slice(&found.face_point.contacts));
+            }
+        });
     }
 
     /// Whether any of these points has a new bound.
@@ -135,14 +146,13 @@ impl<R: Real> ColliderQuery<'_, R> {
     }
 
     /// Finds all overlapping boxes of a group, unless it is out of `reach`.
-    fn search_group(&self, index: u32, reach: &[Vector3<f64>; 2], found: &mut FoundContacts<R>) {
-        let group = self.cloth.boundary.group(index as usize, GROUP_SIZE);
-        if self.is_far(&group, reach) {
+    fn search_group(&self, group: &ElementGroup, reach: &[Vector3<f64>; 2], found: &mut FoundContacts<R>) {
+        if self.is_far(group, reach) {
             return;
         }
         let mut boxes = std::mem::take(&mut found.boxes);
-        let around = self.bound_group(&group, &mut boxes);
-        let target = GroupBoxes { group: &group, boxes: &boxes, around: &around };
+        let around = self.bound_group(group, &mut boxes);
+        let target = GroupBoxes { group, boxes: &boxes, around: &around };
         self.state.bvh.query(&around, |triangle| self.test_triangle(&target, triangle, found));
         found.boxes = boxes;
     }
