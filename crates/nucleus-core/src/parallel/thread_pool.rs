@@ -23,6 +23,9 @@ type Work = *const (dyn Fn(usize) + Sync);
 const SPINS_BEFORE_YIELD: u32 = 2_000;
 const SPINS_BEFORE_SLEEP: u32 = 4_000;
 
+/// Items per task of [`ThreadPool::least`].
+const ITEMS_PER_TASK: usize = 512;
+
 /// One word holds the number of the loop, its number of tasks and the next task, so that one exchange claims a task.
 const TASK_BITS: u32 = 20;
 const TASK_MASK: u64 = (1 << TASK_BITS) - 1;
@@ -99,12 +102,7 @@ impl ThreadPool {
             resume_unwind(panic);
         }
     }
-}
 
-/// Items per task of [`ThreadPool::least`].
-const ITEMS_PER_TASK: usize = 512;
-
-impl ThreadPool {
     /// The least value of some items, infinity without any.
     pub fn least<T: Sync>(&self, items: &[T], value: impl Fn(&T) -> f64 + Sync) -> f64 {
         let least = Mutex::new(f64::INFINITY);
@@ -239,6 +237,18 @@ mod tests {
                     });
                     assert!(done.iter().all(|count| count.load(Ordering::Relaxed) == 1));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn the_least_value_is_found_in_whichever_task_it_is() {
+        let pool = ThreadPool::new(3);
+        for items in [0, 1, ITEMS_PER_TASK, 3 * ITEMS_PER_TASK + 7] {
+            for least in [0, items / 2, items.saturating_sub(1)] {
+                let values: Vec<f64> = (0..items).map(|at| at.abs_diff(least) as f64 - 1.0).collect();
+                let expected = if items == 0 { f64::INFINITY } else { -1.0 };
+                assert_eq!(pool.least(&values, |value| *value), expected, "{least} of {items}");
             }
         }
     }

@@ -119,6 +119,7 @@ impl<R: Real> ClothPair<'_, R> {
             candidates.extend(near.filter_map(|(_, &pair)| self.contact(pair)));
         }
         overlapping.clear();
+        // In a loop of its own: within the one above it makes a frame of falling cloth 4 % slower.
         let SearchInput { anchors, displacement: [start, _], .. } = self.search.input;
         for Candidate { points: (ours, theirs), normal, .. } in &mut candidates[known..] {
             let at = positions((ours, theirs), anchors, |point| start[point as usize].xyz());

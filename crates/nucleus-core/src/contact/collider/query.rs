@@ -93,26 +93,34 @@ impl<R: Real> ColliderQuery<'_, R> {
         for_results(tasks, |found| depenetration.suspects.extend_from_slice(&found.suspects));
         let points = Mutex::new((point_face, by_point));
         let (edges, faces) = (Mutex::new(edge_edge), Mutex::new(face_point));
-        // Uncontended: each list has a task of its own.
+        // Each list has a task of its own; the results are locked only while they are copied.
         pool.parallel_for(3, |kind| match kind {
             0 => {
                 let Ok(mut points) = points.lock() else { return };
                 let (points, by_point) = &mut *points;
-                points.retain(|contact| !self.has_new_bound(&contact.points));
-                for_results(tasks, |found| points.extend_from_slice(&found.point_face.contacts));
+                self.replace(points, tasks, |found| &found.point_face);
                 sort_by_point(points, by_point);
             }
             1 => {
                 let Ok(mut edges) = edges.lock() else { return };
-                edges.retain(|contact| !self.has_new_bound(&contact.points));
-                for_results(tasks, |found| edges.extend_from_slice(&found.edge_edge.contacts));
+                self.replace(&mut edges, tasks, |found| &found.edge_edge);
             }
             _ => {
                 let Ok(mut faces) = faces.lock() else { return };
-                faces.retain(|contact| !self.has_new_bound(&contact.points));
-                for_results(tasks, |found| faces.extend_from_slice(&found.face_point.contacts));
+                self.replace(&mut faces, tasks, |found| &found.face_point);
             }
         });
+    }
+
+    /// Removes the contacts of points with new bounds, and adds those that the tasks have found.
+    fn replace<const N: usize, const M: usize>(
+        &self,
+        contacts: &mut Vec<ColliderContact<R, N, M>>,
+        tasks: &[Mutex<FoundContacts<R>>],
+        of: impl Fn(&FoundContacts<R>) -> &FoundPairs<R, N, M>,
+    ) {
+        contacts.retain(|contact| !self.has_new_bound(&contact.points));
+        for_results(tasks, |found| contacts.extend_from_slice(&of(found).contacts));
     }
 
     /// Whether any of these points has a new bound.

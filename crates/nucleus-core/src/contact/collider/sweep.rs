@@ -62,7 +62,7 @@ fn resolve_elements<R: Real, const N: usize, const M: usize>(
     any.into_inner()
 }
 
-/// Sweeps point-face contacts, block by block.
+/// Sweeps point-face contacts, one run of points after the other.
 fn resolve_points<R: Real>(
     list: &mut ColliderContacts<R>,
     step: &ColliderStep<'_, R>,
@@ -71,19 +71,19 @@ fn resolve_points<R: Real>(
 ) {
     let ColliderContacts { point_face, active, .. } = list;
     active.points.for_tasks(point_face, pool, |pairs, run, planes| {
-        resolve_block(pairs, run, planes, step, counters);
+        resolve_run(pairs, run, planes, step, counters);
     });
 }
 
-/// Resolves the contacts of the points of a block. A point of which no contact is below its thickness stays where it is.
-fn resolve_block<R: Real>(
+/// Resolves the contacts of a run of points. A point of which no contact is below its thickness stays where it is.
+fn resolve_run<R: Real>(
     pairs: DisjointSlice<'_, ColliderContact<R, 1, 3>>,
     run: &[u32],
     planes: &mut [FourPlanes<R, 1>],
     step: &ColliderStep<'_, R>,
     counters: &ContactCounters,
 ) {
-    // SAFETY: the contacts of a point belong to the task of its block.
+    // SAFETY: the contacts of a point belong to one task.
     #[allow(unsafe_code)]
     let contact = |at: usize| unsafe { pairs.get(run[at]) };
     let mut resolved = 0;
@@ -110,7 +110,7 @@ fn resolve_block<R: Real>(
 pub fn adhere<R: Real>(list: &mut ColliderContacts<R>, step: &ColliderStep<'_, R>, pool: &ThreadPool) {
     let ColliderContacts { point_face, active, .. } = list;
     active.points.for_tasks(point_face, pool, |pairs, run, _| {
-        // SAFETY: the contacts of a point belong to the task of its block.
+        // SAFETY: the contacts of a point belong to one task.
         #[allow(unsafe_code)]
         let contact = |index: u32| unsafe { pairs.get(index) };
         for of_point in run.chunk_by(|&a, &b| contact(a).points == contact(b).points) {
@@ -142,7 +142,7 @@ pub fn resolve_contacts<R: Real>(
     for round in 1..=MAX_ROUNDS {
         let (mut pushed, mut reverted) = (0, false);
         for index in of_point.clone() {
-            // SAFETY: the contacts of a point belong to the task of its block.
+            // SAFETY: the contacts of a point belong to one task.
             #[allow(unsafe_code)]
             let [contact] = (unsafe { pairs.run(index..index + 1) }) else { continue };
             let outcome = contact.resolve(step);
