@@ -173,10 +173,8 @@ impl<R: Real> ContactMaterial<R> {
                 material.edges,
             )
         };
-        let found = |material: &[Option<Self>]| {
-            material.iter().map(|material| material.as_ref().map(of)).collect::<Vec<_>>()
-        };
-        found(now) == found(before)
+        now.len() == before.len()
+            && now.iter().zip(before).all(|(now, before)| now.as_ref().map(of) == before.as_ref().map(of))
     }
 
     /// The same for a frame with this resistance model. Classic: frictions that add up to 1 or more grip, as in recorded

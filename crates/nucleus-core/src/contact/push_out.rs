@@ -76,7 +76,6 @@ fn push_out_of<R: Real>(
     if is_moved {
         contact.active_windows[cloth] = [0.0; 2];
         if let Some(cloth_contacts) = &mut contact.cloth_contacts {
-            cloth_contacts.interval = [0.0; 2];
             cloth_contacts.untangling.is_search_due[cloth] = true;
         }
     }

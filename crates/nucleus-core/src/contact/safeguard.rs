@@ -48,12 +48,12 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
             update_cloth_candidates(pass);
         }
         watch.enter(Stage::Contact);
-        pass.contact.has_unproven.iter().for_each(|mark| mark.store(false, Ordering::Relaxed));
+        pass.contact.has_unproven.iter_mut().flatten().for_each(|mark| *mark.get_mut() = false);
         let cloths = certify_cloth_contacts(pass);
         let [mut sides, inseparable] = certify_collider_contacts(pass);
         if sides > 0 {
             settle_free_points(pass);
-            let is_left = pass.contact.has_unproven.iter().any(|mark| mark.load(Ordering::Relaxed));
+            let is_left = pass.contact.has_unproven[1].iter_mut().any(|mark| *mark.get_mut());
             sides = if is_left { sides } else { 0 };
         }
         let unproven = [cloths, sides];
@@ -65,11 +65,12 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
             return;
         }
         if attempt < PUSHING_ENDS {
-            mask_islands(pass.contact);
             let thickness_scale = 0.5f64.powi((attempt + 1).saturating_sub(PUSH_ATTEMPTS) as i32);
             if unproven[0] > 0 {
+                mask_islands(pass.contact, |[among_cloths, _]| among_cloths);
                 resolve_cloth_contacts(pass, thickness_scale, watch);
             }
+            mask_islands(pass.contact, |[among_cloths, with_colliders]| among_cloths || with_colliders);
             resolve_collider_contacts(pass, thickness_scale, watch);
             pass.contact.contact_mask.clear();
         } else if attempt < PUSHING_ENDS + TRUNCATE_ATTEMPTS {
@@ -82,24 +83,27 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
             revert_collider_contacts(pass);
             freeze(pass);
         } else {
-            return accept_unresolved(pass, unproven[0] > 0);
+            return accept_unresolved(pass);
         }
     }
 }
 
 fn certify_cloth_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> u64 {
-    let marks = std::mem::take(&mut pass.contact.has_unproven);
+    let marks = std::mem::take(&mut pass.contact.has_unproven[0]);
     let count = pass.with_cloth_contacts(|cache, step, pool| cache.certify(step, &marks, pool));
-    pass.contact.has_unproven = marks;
+    pass.contact.has_unproven[0] = marks;
     count.unwrap_or(0)
 }
 
-/// Masks the islands of cloths in contact with each other that have a contact without certificate: only their contacts
-/// push again, so that no cloth elsewhere is changed.
-fn mask_islands<R: Real>(contact: &mut ContactSystem<R>) {
-    let ContactSystem { cloth_contacts, contact_mask, has_unproven, .. } = contact;
+/// Masks the islands of cloths in contact with each other of which any `is_unproven`, given whether it has contacts without
+/// certificate among cloths and with colliders: only their contacts push again, so that no cloth elsewhere is changed.
+fn mask_islands<R: Real>(contact: &mut ContactSystem<R>, is_unproven: impl Fn([bool; 2]) -> bool) {
+    let ContactSystem { cloth_contacts, contact_mask, has_unproven: [among_cloths, with_colliders], .. } =
+        contact;
     contact_mask.clear();
-    contact_mask.extend(has_unproven.iter().map(|mark| mark.load(Ordering::Relaxed)));
+    let marks = among_cloths.iter().zip(&*with_colliders);
+    contact_mask
+        .extend(marks.map(|marks| is_unproven([marks.0, marks.1].map(|mark| mark.load(Ordering::Relaxed)))));
     let Some(ClothContacts { cache, materials, .. }) = cloth_contacts else { return };
     let mut has_grown = true;
     while has_grown {
@@ -137,10 +141,10 @@ fn clear_frozen<R: Real>(state: &State<R>, contact: &mut ContactSystem<R>) {
 }
 
 /// Accepts pairs that no fallback resolves. Their contacts are searched anew.
-fn accept_unresolved<R: Real>(pass: &mut ContactPass<'_, R>, among_cloths: bool) {
+fn accept_unresolved<R: Real>(pass: &mut ContactPass<'_, R>) {
     accept_unresolved_collider_contacts(pass);
     if let Some(cloth_contacts) = &mut pass.contact.cloth_contacts {
-        let marks = pass.contact.has_unproven.iter().map(|mark| mark.load(Ordering::Relaxed) && among_cloths);
+        let marks = pass.contact.has_unproven[0].iter_mut().map(|mark| *mark.get_mut());
         cloth_contacts
             .untangling
             .is_search_due

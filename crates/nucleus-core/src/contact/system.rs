@@ -53,8 +53,8 @@ pub struct ContactSystem<R: Real> {
     pub cloth_contacts: Option<ClothContacts<R>>,
     /// The cloths whose contacts a pass resolves; all where it is empty.
     pub contact_mask: Vec<bool>,
-    /// Whether each cloth has a contact without certificate.
-    pub has_unproven: Vec<AtomicBool>,
+    /// Whether each cloth has a contact without certificate: among cloths, and with colliders.
+    pub has_unproven: [Vec<AtomicBool>; 2],
     /// Elements that do not collide with each other.
     pub pair_filter: PairFilter,
     /// Whether each cloth had a contact in the last frame.
@@ -98,7 +98,7 @@ impl<R: Real> ContactSystem<R> {
             material_maps: MaterialMaps::new(cloths, models, state.anchor.len(), collider_maps),
             cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
             contact_mask: Vec::with_capacity(models.len()),
-            has_unproven: models.iter().map(|_| AtomicBool::new(false)).collect(),
+            has_unproven: [(); 2].map(|()| models.iter().map(|_| AtomicBool::new(false)).collect()),
             pair_filter: PairFilter::default(),
             // Cloth that starts from a saved state may be in contact; the first frame finds out.
             touches: cloths.iter().map(|cloth| !cloth.start.positions.is_empty()).collect(),

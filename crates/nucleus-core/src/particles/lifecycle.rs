@@ -11,7 +11,6 @@ use crate::input::frame::{Birth, ClothFrame, FrameInput};
 use crate::input::validation::is_in_range;
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
-use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::events::{Spawn, collision_events};
 use crate::particles::first_way::Obstacles;
 use crate::particles::population::{Population, close_up};
@@ -222,14 +221,13 @@ fn begin_contact_of<R: Real>(
     rows.clone().for_each(|row| contact.invalidate_bounds(row as usize));
     contact.active_windows[cloth] = [0.0; 2];
     if let Some(contacts) = &mut contact.cloth_contacts {
-        contacts.interval[1] = contacts.interval[0];
         contacts.interval_start[rows.start as usize..rows.end as usize].fill(Row4::ZERO);
     }
 }
 
 /// Closes up the rows of an object; `kept` are the places of the particles that remain, which ascend.
 fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
-    let Solver { model, state, contact, pool, .. } = solver;
+    let Solver { model, state, contact, .. } = solver;
     let points = model.cloths[cloth].points();
     let rows = points.start as usize..points.end as usize;
     close_up(&mut state.anchor[rows.clone()], kept);
@@ -255,7 +253,7 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
     state.velocity[dead.clone()].fill(Row4::ZERO);
     state.inverse_mass[dead].fill(R::ZERO);
     model.cloths[cloth].resize(kept.len());
-    renumber_contacts(contact, cloth, points.clone(), kept, pool);
+    renumber_contacts(contact, cloth, points.clone(), kept);
     contact.ground.set_anchors(points.start..points.start + kept.len() as u32, &state.anchor);
 }
 
@@ -274,7 +272,6 @@ fn renumber_contacts<R: Real>(
     cloth: usize,
     before: Range<u32>,
     kept: &[u32],
-    pool: &ThreadPool,
 ) {
     let bounds = contact.bounds_violated.get_mut(before.start as usize..before.end as usize);
     bounds.unwrap_or_default().fill(true);
@@ -285,7 +282,7 @@ fn renumber_contacts<R: Real>(
         list.depenetration.renumber(number);
     }
     if let Some(contacts) = &mut contact.cloth_contacts {
-        contacts.close_up(before, kept, pool);
+        contacts.close_up(before, kept);
     }
 }
 

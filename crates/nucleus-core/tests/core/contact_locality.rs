@@ -3,8 +3,8 @@
 
 use crate::scenes::{Vec3, frame, grid, physical, sphere, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
-    ModelBuilder, Pin, PointId, SelfCollision, Solver, StateView, Surface,
+    Birth, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
+    ModelBuilder, Particles, Pin, PointId, PushOut, SelfCollision, Solver, StateView, Surface,
 };
 use proptest::prelude::*;
 
@@ -101,12 +101,16 @@ impl Scene {
 
     /// Positions of all points of each cloth after each frame, and the contacts of the run.
     fn run(self, threads: usize) -> (Vec<Vec<Vec<Vec3>>>, u64) {
-        let (run, contacts, _) = self.run_and_count(threads);
+        let (run, contacts, _) = self.run_and_count(threads, |_, _| ());
         (run, contacts)
     }
 
-    /// The same, and the number of pairs that stayed unresolved.
-    fn run_and_count(self, threads: usize) -> (Vec<Vec<Vec<Vec3>>>, u64, u64) {
+    /// The same, and the number of pairs that stayed unresolved. `change` changes the input of a frame.
+    fn run_and_count(
+        self,
+        threads: usize,
+        mut change: impl FnMut(usize, &mut FrameInput),
+    ) -> (Vec<Vec<Vec<Vec3>>>, u64, u64) {
         let Self { heaps, builder, mut input, pinned } = self;
         let counts: Vec<usize> =
             heaps.iter().flat_map(|heap| vec![(heap.points * heap.points) as usize; heap.sheets]).collect();
@@ -126,6 +130,7 @@ impl Scene {
                     (collider.start, collider.end) = (at(index), at(index + 1));
                 }
             }
+            change(index, &mut input);
             let report = solver.step(&input, &mut ());
             contacts += report.contacts;
             unresolved += report.pairs_unresolved;
@@ -191,11 +196,60 @@ proptest! {
         let forced = Heap { place, points: 6, sheets: 2, is_forced: true, ..far };
         let (alone, contacts) = Scene::new(std::slice::from_ref(&near)).run(1);
         prop_assert!(contacts > 0);
-        let (forced_alone, _, unresolved) = Scene::new(std::slice::from_ref(&forced)).run_and_count(1);
+        let (forced_alone, _, unresolved) = Scene::new(std::slice::from_ref(&forced)).run_and_count(1, |_, _| ());
         prop_assert!(unresolved > 0);
         let (both, _) = Scene::new(&[near.clone(), forced]).run(1);
         prop_assert!(cloths(&both, 0..near.sheets) == alone, "the far pair changes the near heap");
         prop_assert!(cloths(&both, near.sheets..near.sheets + 2) == forced_alone, "the near heap changes the far pair");
+    }
+
+    #[test]
+    fn particles_that_are_born_and_die_far_away_do_not_change_a_bit(near in heaps(), rate in 1..9usize) {
+        let (alone, contacts) = Scene::new(std::slice::from_ref(&near)).run(1);
+        prop_assert!(contacts > 0);
+        let mut scene = Scene::new(std::slice::from_ref(&near));
+        let object = ClothId(scene.input.cloths.len() as u32);
+        let place = |k: usize| near.place + Vec3::new(40.0, 0.1 * k as f64, 0.0);
+        let particles = Particles { capacity: 200, lifespans: vec![0.03, f64::INFINITY, 0.1], ..Particles::default() };
+        let surface = Surface { positions: (0..3).map(place).collect(), ..Surface::default() };
+        let mut cloth = Cloth::new(surface, Mass::PerPoint(0.01), ClothLists { self_collision: true, ..ClothLists::NONE });
+        cloth.particles = Some(particles);
+        scene.builder.cloth(cloth).expect("valid particles");
+        let own = SelfCollision { on: true, thickness: 0.02, elements: Elements::Points, edges: false };
+        scene.input.cloths.push(ClothFrame { thickness: 0.02, self_collision: own, ..still() });
+        let born = |k: usize| {
+            let time = (k as f64 + 0.5) / rate as f64;
+            Birth { cloth: object, time, position: place(k), velocity: Vec3::x(), lifespan: 0.02 * (1 + k % 4) as f64 }
+        };
+        let (both, _, _) = scene.run_and_count(1, |_, input| input.births = (0..rate).map(born).collect());
+        prop_assert!(both == alone);
+    }
+
+    #[test]
+    fn a_collider_that_pushes_out_far_away_does_not_change_a_bit(near in heaps(), far in heaps(), share in 0.1..1.0f64) {
+        // It starts with cloth inside.
+        let slope = -0.03 - far.slope.abs();
+        let far = Heap { place: far.place + Vec3::new(40.0, 0.0, 3.0), slope, ..far };
+        let [with, without] = [share, 0.0].map(|share| {
+            let push_out = PushOut { share, radius: 0.1 };
+            let scene = Scene::new(&[near.clone(), far.clone()]);
+            scene.run_and_count(1, |_, input| input.colliders[1].push_out = push_out).0
+        });
+        prop_assert!(with != without);
+        prop_assert!(cloths(&with, 0..near.sheets) == cloths(&without, 0..near.sheets));
+    }
+
+    #[test]
+    fn a_thickness_that_changes_far_away_does_not_change_a_bit(near in heaps(), far in heaps(), share in 0.3..0.9f64) {
+        let far = Heap { place: far.place + Vec3::new(40.0, 0.0, 3.0), ..far };
+        let (alone, contacts) = Scene::new(std::slice::from_ref(&near)).run(1);
+        prop_assert!(contacts > 0);
+        let scene = Scene::new(&[near.clone(), far]);
+        let (both, _, _) = scene.run_and_count(1, |_, input| {
+            let changed = input.cloths.iter_mut().skip(near.sheets);
+            changed.for_each(|cloth| (cloth.thickness, cloth.self_collision.thickness) = (cloth.thickness * share, cloth.thickness * share));
+        });
+        prop_assert!(cloths(&both, 0..near.sheets) == alone);
     }
 
     #[test]

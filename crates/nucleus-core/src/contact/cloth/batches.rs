@@ -120,9 +120,21 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         batches.iter().map(|batch| batch.list.len() - batch.disabled).sum()
     }
 
-    /// Renumbers the rows of points; disables contacts of a point without a number.
-    pub fn renumber(&mut self, number: &impl Fn(u32) -> Option<u32>) {
+    /// Renumbers the rows of points; removes contacts of a point without a number.
+    pub fn renumber(
+        &mut self,
+        number: &impl Fn(u32) -> Option<u32>,
+        blocks: Blocks<'_>,
+        order: &mut Vec<Place>,
+    ) {
         self.iter_mut().for_each(|contact| contact.renumber(number));
+        let Self { free_points, initial, incremental } = self;
+        // Tasks change with the blocks of points, and the order in a task is that of points.
+        free_points.list.sort_unstable_by_key(ClothContact::points);
+        for batch in [free_points, initial, incremental] {
+            batch.list.retain(|contact| !contact.is_disabled());
+            batch.sort_by_task(blocks, order);
+        }
     }
 
     /// Before an incremental update: disables the contacts of points that violated their bounds where they are to stay in

@@ -4,7 +4,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::batches::{ContactList, ListUpdate};
+use crate::contact::cloth::batches::{Blocks, ContactList, ListUpdate};
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::query::FoundContacts;
 use crate::contact::colouring::Place;
@@ -78,13 +78,17 @@ impl<R: Real> ContactCache<R> {
         });
     }
 
-    /// Renumbers the rows of points; contacts of a point without a number are removed. The batches are assigned anew by
-    /// the next update.
-    pub(super) fn renumber(&mut self, number: &impl Fn(u32) -> Option<u32>) {
-        self.point_face.renumber(number);
-        self.edge_edge.renumber(number);
-        self.point_edge.renumber(number);
-        self.point_point.renumber(number);
+    /// Renumbers the rows of points; contacts of a point without a number are removed.
+    pub(super) fn renumber(
+        &mut self,
+        number: &impl Fn(u32) -> Option<u32>,
+        blocks: Blocks<'_>,
+        order: &mut Vec<Place>,
+    ) {
+        self.point_face.renumber(number, blocks, order);
+        self.edge_edge.renumber(number, blocks, order);
+        self.point_edge.renumber(number, blocks, order);
+        self.point_point.renumber(number, blocks, order);
     }
 
     /// The number of contacts after an update.

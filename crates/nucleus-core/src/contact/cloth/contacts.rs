@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use crate::contact::cloth::batches::ListUpdate;
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
@@ -67,12 +66,21 @@ impl<R: Real> ClothContacts<R> {
 
     /// Follows the particles of an object whose rows are closed up; `kept` are the places of those that remain, which
     /// ascend. Their contacts keep normals and friction anchors.
-    pub fn close_up(&mut self, points: Range<u32>, kept: &[u32], pool: &ThreadPool) {
-        self.interval[1] = self.interval[0];
-        let Self { elements, cache, buffers, bounds_violated, interval_start, trajectories, .. } = self;
-        buffers.bounds.forget(points.clone());
-        buffers.bounds_margin = None;
+    pub fn close_up(&mut self, points: Range<u32>, kept: &[u32]) {
+        let Self {
+            elements,
+            cache,
+            buffers,
+            bounds_violated,
+            interval_start,
+            trajectories,
+            local_anchors,
+            ..
+        } = self;
         let rows = points.start as usize..points.end as usize;
+        buffers.bounds.close_up(rows.clone(), kept);
+        buffers.bounds_margin = None;
+        local_anchors.clear();
         close_up(&mut interval_start[rows.clone()], kept);
         close_up(&mut trajectories.origin[rows.clone()], kept);
         close_up(&mut trajectories.travel[rows.clone()], kept);
@@ -80,18 +88,42 @@ impl<R: Real> ClothContacts<R> {
         let dead = rows.start + kept.len()..rows.end;
         interval_start[dead.clone()].fill(Row4::ZERO);
         bounds_violated[dead].fill(true);
-        cache.renumber(&|row| match points.contains(&row) {
+        let number = |row: u32| match points.contains(&row) {
             true => kept.binary_search(&(row - points.start)).ok().map(|at| points.start + at as u32),
             false => Some(row),
-        });
-        let none_violated = vec![false; bounds_violated.len()];
-        let update = ListUpdate {
-            bounds_violated: &none_violated,
-            has_violations: &[],
-            refresh: RefreshKind::Full,
-            blocks: (&elements.block, elements.blocks),
         };
-        cache.update(&[], &update, &mut buffers.orders, pool);
+        cache.renumber(&number, (&elements.block, elements.blocks), &mut buffers.orders[0]);
+    }
+
+    /// Has the pairs searched anew that other materials than `before` may find, from one side each: of cloths with other
+    /// settings, and not of all that they can touch.
+    pub(super) fn search_changed(&mut self, before: &[Option<ContactMaterial<R>>]) {
+        let Self { elements, materials, bounds_violated, .. } = self;
+        let cloths = materials.len().isqrt();
+        let is_changed = |pair: usize| {
+            let before = before.get(pair..=pair).unwrap_or_default();
+            !ContactMaterial::same_candidates(&materials[pair..=pair], before)
+        };
+        let mut counts = vec![0; cloths];
+        let mut changed: Vec<bool> = (0..materials.len()).map(is_changed).collect();
+        for pair in (0..materials.len()).filter(|&pair| changed[pair]) {
+            [pair / cloths, pair % cloths].into_iter().for_each(|side| counts[side] += 1);
+        }
+        let mut is_searched = vec![false; cloths];
+        // A greedy vertex cover.
+        while let Some(most) = (0..cloths).max_by_key(|&cloth| counts[cloth]).filter(|&most| counts[most] > 0)
+        {
+            is_searched[most] = true;
+            for other in 0..cloths {
+                for pair in [most * cloths + other, other * cloths + most] {
+                    if std::mem::take(&mut changed[pair]) {
+                        [most, other].into_iter().for_each(|side| counts[side] -= 1);
+                    }
+                }
+            }
+        }
+        let points = bounds_violated.iter_mut().zip(&elements.cloth);
+        points.for_each(|(is_violated, &cloth)| *is_violated |= is_searched[cloth as usize]);
     }
 
     /// Whether a cloth can collide with itself or with another in this frame.
@@ -127,6 +159,7 @@ impl<R: Real> ClothContacts<R> {
         if refresh.is_incremental() {
             bounds.update(anchors, trajectories, violated.clone(), changed);
         } else {
+            bounds.set_origin(anchors.first().copied().unwrap_or_default());
             bounds.update(anchors, trajectories, points(), changed);
         }
         group_bounds.resize_with(elements.groups.len(), GroupBounds::default);

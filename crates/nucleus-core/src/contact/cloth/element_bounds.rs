@@ -1,11 +1,14 @@
 //! Swept bounds of points, elements and groups over a candidate interval, in single precision: conservative for
 //! the search, not for certificates.
 
+use std::ops::Range;
+
 use crate::contact::bvh::{Aabb, SweptBox};
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::swept_points::{ElementPoints, ROUNDING, SweptPoints};
 use crate::contact::narrow_phase::{ElementPositions, between_centroids, gap_along, shortest_line};
 use crate::math::{Real, dot};
+use crate::particles::population::close_up;
 
 /// Share of the distance at rest that neighbours keep: a cloth thicker than its faces must still bend.
 const REST_GAP_SHARE: f32 = 0.5;
@@ -13,6 +16,8 @@ const REST_GAP_SHARE: f32 = 0.5;
 /// The swept positions of all points, and their boxes.
 #[derive(Debug, Default)]
 pub struct ElementBounds {
+    /// The origin of all swept positions in metres.
+    origin: [f64; 3],
     swept_points: SweptPoints,
     /// Boxes around the balls at both ends.
     boxes: Vec<SweptBox>,
@@ -33,6 +38,11 @@ pub struct ContactDistance {
 const CERTIFIED_GAP: f32 = 0.02;
 
 impl ElementBounds {
+    /// Sets the origin of all swept positions. All points are to be updated after it.
+    pub fn set_origin(&mut self, origin: [f64; 3]) {
+        self.origin = origin;
+    }
+
     /// Updates some points. Lists those whose boxes have changed.
     pub fn update<R: Real>(
         &mut self,
@@ -42,12 +52,11 @@ impl ElementBounds {
         changed: &mut Vec<u32>,
     ) {
         changed.clear();
-        let Some(origin) = anchors.first() else { return };
         self.swept_points.resize(anchors.len());
         self.boxes.resize(anchors.len(), [Aabb::EMPTY; 2]);
         for point in points {
             let at = point as usize;
-            let anchor = std::array::from_fn(|axis| anchors[at][axis] - origin[axis]);
+            let anchor = std::array::from_fn(|axis| anchors[at][axis] - self.origin[axis]);
             let [start, end] = self.swept_points.set(at, &trajectories.of(point), anchor);
             let boxes = [Aabb::ball(start.0, start.1), Aabb::ball(end.0, end.1)];
             if self.boxes[at] != boxes {
@@ -57,10 +66,12 @@ impl ElementBounds {
         }
     }
 
-    /// Empties the boxes of particles that no longer exist.
-    pub fn forget(&mut self, points: std::ops::Range<u32>) {
-        let rows = points.start as usize..points.end as usize;
-        self.boxes.get_mut(rows).unwrap_or_default().fill([Aabb::EMPTY; 2]);
+    /// Follows the particles of an object whose rows are closed up; `kept` are the places of those that remain.
+    pub fn close_up(&mut self, rows: Range<usize>, kept: &[u32]) {
+        let Some(boxes) = self.boxes.get_mut(rows.clone()) else { return };
+        close_up(boxes, kept);
+        boxes[kept.len()..].fill([Aabb::EMPTY; 2]);
+        self.swept_points.close_up(rows, kept);
     }
 
     /// The swept box of some points, inflated by a margin.

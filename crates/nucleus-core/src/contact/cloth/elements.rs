@@ -55,8 +55,8 @@ pub struct ElementGroups {
     pub block: Vec<u32>,
     /// The cloth of each point.
     pub cloth: Vec<u32>,
-    /// Mean edge length at rest of the cloth with the shortest edges, in metres.
-    pub edge_length: f64,
+    /// Mean edge length of each cloth at rest, in metres; zero without edges.
+    pub edge_lengths: Vec<f64>,
     /// The number of blocks.
     pub blocks: u32,
     /// Position of each point at rest, in metres relative to the first of its cloth.
@@ -67,7 +67,7 @@ checkpoint_struct!([] ElementGroups {
     columns: [rest_positions],
     values: [],
     parts: [bvhs],
-    rebuilt: [groups, first_groups, swept_boxes, points, ends, block, cloth, edge_length, blocks, groups_of_point, is_free_point],
+    rebuilt: [groups, first_groups, swept_boxes, points, ends, block, cloth, edge_lengths, blocks, groups_of_point, is_free_point],
 });
 
 impl ElementGroups {
@@ -94,8 +94,7 @@ impl ElementGroups {
                 all.blocks += 1;
             }
         }
-        let lengths = cloths.iter().map(|cloth| cloth.edge_length).filter(|&length| length > 0.0);
-        all.edge_length = lengths.fold(f64::INFINITY, f64::min);
+        all.edge_lengths = cloths.iter().map(|cloth| cloth.edge_length).collect();
         all.build(cloths, anchors);
         all
     }

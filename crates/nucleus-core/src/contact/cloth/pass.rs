@@ -4,7 +4,6 @@ use crate::contact::cloth::broad_phase::update_cloth_candidates;
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::contact::{ClothStep, FrictionAnchors};
 use crate::contact::cloth::contacts::ClothContacts;
-use crate::contact::cloth::untangling::UNTANGLING_SPEED;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
@@ -27,10 +26,8 @@ pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSyste
             cloth_contacts.untangling.is_search_due[at / frame.cloths.len()] = true;
         }
     }
-    if !ContactMaterial::same_candidates(&materials, &cloth_contacts.materials) {
-        cloth_contacts.bounds_violated.fill(true);
-    }
-    cloth_contacts.materials = materials;
+    let before = std::mem::replace(&mut cloth_contacts.materials, materials);
+    cloth_contacts.search_changed(&before);
     cloth_contacts.local_anchors.clear();
     if !cloth_contacts.is_enabled() {
         cloth_contacts.bounds_violated.fill(true);
@@ -76,9 +73,8 @@ pub fn resolve_cloth_contacts<R: Real>(
     let ClothContacts { elements, materials, cache, interval_start, local_anchors, untangling, .. } =
         cloth_contacts;
     if untangling.any() {
-        let most = elements.edge_length * UNTANGLING_SPEED * schedule.h;
         let step = ClothStep { mask, ..ClothStep::new(state, materials, material_maps, schedule.h) };
-        untangling.untangle(&step, &elements.cloth, most);
+        untangling.untangle(&step, elements, schedule.h);
     }
     let anchors = Some(FrictionAnchors { interval_start, intersecting: untangling.cloth_pairs() });
     let thickness_scale = R::from_f64(thickness_scale);

@@ -1,9 +1,12 @@
 //! The swept positions of points over a candidate interval in single precision, and lower bounds on the distance of two
 //! elements from them.
 
+use std::ops::Range;
+
 use crate::contact::cloth::motion_bounds::Trajectory;
 use crate::contact::narrow_phase::{gap_along, shortest_line};
 use crate::math::{Lanes as _, Real, add, dot, scale, sub};
+use crate::particles::population::close_up;
 
 /// The points of two elements.
 pub type ElementPoints<const N: usize, const M: usize> = ([u32; N], [u32; M]);
@@ -22,6 +25,11 @@ impl SweptPoints {
     /// Resizes to `points` points.
     pub fn resize(&mut self, points: usize) {
         self.ends.resize(points, [[0.0; 4]; 2]);
+    }
+
+    /// Follows the particles of an object whose rows are closed up; `kept` are the places of those that remain.
+    pub fn close_up(&mut self, rows: Range<usize>, kept: &[u32]) {
+        close_up(self.ends.get_mut(rows).unwrap_or_default(), kept);
     }
 
     /// Sets a point from its trajectory. `anchor` is in metres from the origin. Returns the balls at the start

@@ -9,6 +9,7 @@
 
 use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::contact::ClothStep;
+use crate::contact::cloth::elements::ElementGroups;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub, unit};
 
 /// In metres.
@@ -112,19 +113,20 @@ impl Untangling {
         self.any() && self.cloth_pairs.contains(&[low, high]) && is_near(ours) && is_near(theirs)
     }
 
-    /// Applies the corrections of all intersections that persist, by `most` metres at most, times the untangling
-    /// rate of the material. `cloth` holds the cloth of each point.
-    pub fn untangle<R: Real>(&self, step: &ClothStep<'_, R>, cloth: &[u32], most: f64) {
+    /// Applies the corrections of all intersections that persist, at [`UNTANGLING_SPEED`] and the untangling rate of the
+    /// material, in the shorter edge length of the two cloths. The time step has `h` seconds.
+    pub fn untangle<R: Real>(&self, step: &ClothStep<'_, R>, elements: &ElementGroups, h: f64) {
         let cloths = step.materials.len().isqrt();
         for intersection in &self.intersections {
-            let [ours, theirs] =
-                [intersection.edge[0], intersection.face[0]].map(|point| cloth[point as usize] as usize);
+            let [ours, theirs] = [intersection.edge[0], intersection.face[0]]
+                .map(|point| elements.cloth[point as usize] as usize);
             if !step.mask.is_empty() && !step.mask[ours] {
                 continue;
             }
             let material = &step.materials[ours * cloths + theirs];
             let rate = material.as_ref().map_or(1.0, |material| material.untangling_rate);
-            intersection.untangle(step, most * rate);
+            let edge_length = elements.edge_lengths[ours].min(elements.edge_lengths[theirs]);
+            intersection.untangle(step, edge_length * UNTANGLING_SPEED * h * rate);
         }
     }
 }

@@ -23,9 +23,9 @@ const ATTEMPTS: [usize; 3] = [4, 6, 8];
 /// themselves. Unmarks those that have none left.
 pub fn settle_free_points<R: Real>(pass: &mut ContactPass<'_, R>) {
     for cloth in 0..pass.model.cloths.len() {
-        let is_marked = pass.contact.has_unproven[cloth].load(Ordering::Relaxed);
+        let is_marked = pass.contact.has_unproven[1][cloth].load(Ordering::Relaxed);
         if is_marked && is_independent(pass, cloth) && settle(pass, cloth) {
-            pass.contact.has_unproven[cloth].store(false, Ordering::Relaxed);
+            pass.contact.has_unproven[1][cloth].store(false, Ordering::Relaxed);
         }
     }
 }

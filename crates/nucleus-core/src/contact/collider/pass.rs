@@ -70,7 +70,7 @@ pub fn apply_collider_adhesion<R: Real>(pass: &mut ContactPass<'_, R>) {
 /// The number of contacts with colliders without certificate, and of inseparable ones, at the end of a time
 /// step.
 pub fn certify_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> [u64; 2] {
-    let marks = std::mem::take(&mut pass.contact.has_unproven);
+    let marks = std::mem::take(&mut pass.contact.has_unproven[1]);
     let mut counts = [0; 2];
     for_all_contacts(pass, |list, step, pool, _| {
         let [unproven, inseparable] = certify(list, step, pool);
@@ -79,7 +79,7 @@ pub fn certify_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> [u64
         }
         counts = [counts[0] + unproven, counts[1] + inseparable];
     });
-    pass.contact.has_unproven = marks;
+    pass.contact.has_unproven[1] = marks;
     counts
 }
 
