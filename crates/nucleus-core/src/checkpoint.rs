@@ -361,6 +361,7 @@ fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: 
         && cache.edge_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
         && cache.point_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
         && cache.point_point.iter().all(|contact| contact.is_valid(are_points, materials.len()))
+        && cache.is_sorted((&elements.block, elements.blocks))
         && untangling.intersections.iter().all(|intersection| {
             are_points(&intersection.edge)
                 && are_points(&intersection.wings)

@@ -30,6 +30,8 @@ impl BoxRow {
     /// Replaces all by the boxes of some elements.
     pub fn fill<T>(&mut self, things: &[T], boxes: impl Fn(&T) -> SweptBox) {
         self.eights.clear();
+        // Most rows are one or two long, where a vector would begin with room for four.
+        self.eights.reserve_exact(things.len().div_ceil(8));
         self.eights.extend(things.chunks(8).map(|things| {
             let mut eight = [[Aabb::EMPTY; 2]; 8];
             eight.iter_mut().zip(things).for_each(|(slot, thing)| *slot = boxes(thing));

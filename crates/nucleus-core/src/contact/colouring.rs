@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 /// Moves the contact of each place to it. The keys stay, the indices are lost.
-pub fn permute<T: Copy>(list: &mut [T], order: &mut [Place]) {
+pub fn permute<T: Copy, K>(list: &mut [T], order: &mut [(K, u32)]) {
     for first in 0..list.len() {
         let (held, mut to) = (list[first], first);
         loop {

@@ -5,11 +5,12 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::bvh::Aabb;
-use crate::contact::cloth::batches::ListUpdate;
-use crate::contact::cloth::contacts::{ClothContacts, GROUPS_PER_TASK, SearchBuffers};
+use crate::contact::cloth::contact_list::Replaced;
+use crate::contact::cloth::contacts::{ClothContacts, GROUPS_PER_TASK, SearchBuffers, TASKS_AT_A_TIME};
+use crate::contact::cloth::found_contacts::FoundContacts;
 use crate::contact::cloth::intersections::find_intersections;
 use crate::contact::cloth::motion_bounds::{BoundPredictor, Trajectory};
-use crate::contact::cloth::query::{ClothPair, FoundContacts};
+use crate::contact::cloth::query::ClothPair;
 use crate::contact::cloth::search::{ClothSearch, RefreshKind, SearchInput};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
@@ -201,12 +202,13 @@ fn find_candidates<R: Real>(
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;
-    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, orders, has_violations, .. } =
-        buffers;
+    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, has_violations, .. } = buffers;
     elements.find_new_bounds(groups, bounds_violated, new_bounds);
-    let chunks = groups.len().div_ceil(GROUPS_PER_TASK);
-    tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
-    let own = DisjointSlice::new(tasks);
+    has_violations.clear();
+    has_violations.resize(elements.blocks as usize, false);
+    let violated = bounds_violated.iter().zip(&elements.block).filter(|(is_violated, _)| **is_violated);
+    violated.for_each(|(_, &block)| has_violations[block as usize] = true);
+    cache.remove(&Replaced { bounds_violated, has_violations }, pool);
     let search = ClothSearch {
         elements,
         materials,
@@ -218,22 +220,22 @@ fn find_candidates<R: Real>(
         bounds_violated,
         new_bounds,
     };
-    pool.parallel_for(chunks, |task| {
-        // Uncontended: a task runs once.
-        // SAFETY: every task has its own.
-        #[allow(unsafe_code)]
-        let [found] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
-        found.clear();
-        let end = ((task + 1) * GROUPS_PER_TASK).min(groups.len());
-        groups[task * GROUPS_PER_TASK..end].iter().for_each(|&group| search.search_group(group, found));
-    });
-    has_violations.clear();
-    has_violations.resize(elements.blocks as usize, false);
-    let violated = bounds_violated.iter().zip(&elements.block).filter(|(is_violated, _)| **is_violated);
-    violated.for_each(|(_, &block)| has_violations[block as usize] = true);
-    let update =
-        ListUpdate { bounds_violated, has_violations, refresh, blocks: (&elements.block, elements.blocks) };
-    cache.update(&tasks[..chunks], &update, orders, pool);
+    for groups in groups.chunks(GROUPS_PER_TASK * TASKS_AT_A_TIME) {
+        let chunks = groups.len().div_ceil(GROUPS_PER_TASK);
+        tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
+        let own = DisjointSlice::new(tasks);
+        pool.parallel_for(chunks, |task| {
+            // SAFETY: every task has its own.
+            #[allow(unsafe_code)]
+            let [found] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
+            found.clear();
+            let groups = groups.chunks(GROUPS_PER_TASK).nth(task).unwrap_or_default();
+            groups.iter().for_each(|&group| search.search_group(group, found));
+            found.sort_by_task(&elements.block);
+        });
+        cache.add(&tasks[..chunks], pool);
+    }
+    cache.finish(elements.blocks);
     bounds_violated.fill(false);
 }
 

@@ -1,13 +1,11 @@
 //! The contact cache: all contacts among cloths, by kind, over a candidate interval.
 
-use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::batches::{Blocks, ContactList, ListUpdate};
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
-use crate::contact::cloth::query::FoundContacts;
-use crate::contact::colouring::Place;
+use crate::contact::cloth::contact_list::{Blocks, ContactList, Replaced};
+use crate::contact::cloth::found_contacts::FoundContacts;
 use crate::contact::response::Restitution;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
@@ -42,56 +40,48 @@ impl<R> Default for ContactCache<R> {
 }
 
 impl<R: Real> ContactCache<R> {
-    /// Adds the contacts that tasks found, in their order, and removes those of points that violated their
-    /// bounds.
-    pub(super) fn update(
-        &mut self,
-        tasks: &[FoundContacts<R>],
-        update: &ListUpdate<'_>,
-        orders: &mut [Vec<Place>; 2],
-        pool: &ThreadPool,
-    ) {
-        let Self { point_face, edge_edge, point_edge, point_point } = self;
-        if update.refresh.is_incremental() {
-            point_face.disable_violated(update, pool);
-            edge_edge.disable_violated(update, pool);
-            point_edge.disable_violated(update, pool);
-            point_point.disable_violated(update, pool);
-        }
-        let [of_points, of_edges] = orders;
-        // Two tasks with separate lists; that of pairs of edges takes three quarters of the time.
-        let of_points = Mutex::new((point_face, point_point, of_points));
-        let of_edges = Mutex::new((edge_edge, point_edge, of_edges));
-        pool.parallel_for(2, |half| match half {
-            0 => {
-                let Ok(mut lists) = of_points.lock() else { return };
-                let (faces, points, order) = &mut *lists;
-                faces.update(tasks.iter().flat_map(|found| &found.point_face.candidates), update, order);
-                points.update(tasks.iter().flat_map(|found| &found.point_point.candidates), update, order);
-            }
-            _ => {
-                let Ok(mut lists) = of_edges.lock() else { return };
-                let (edges, points, order) = &mut *lists;
-                edges.update(tasks.iter().flat_map(|found| &found.edge_edge.candidates), update, order);
-                points.update(tasks.iter().flat_map(|found| &found.point_edge.candidates), update, order);
-            }
-        });
+    /// Removes the contacts that a search replaces.
+    pub(super) fn remove(&mut self, replaced: &Replaced<'_>, pool: &ThreadPool) {
+        self.point_face.remove(replaced, pool);
+        self.edge_edge.remove(replaced, pool);
+        self.point_edge.remove(replaced, pool);
+        self.point_point.remove(replaced, pool);
+    }
+
+    /// Adds what search tasks have found, in their order.
+    pub(super) fn add(&mut self, found: &[FoundContacts<R>], pool: &ThreadPool) {
+        self.point_face.add(found, |found| &found.point_face, pool);
+        self.edge_edge.add(found, |found| &found.edge_edge, pool);
+        self.point_edge.add(found, |found| &found.point_edge, pool);
+        self.point_point.add(found, |found| &found.point_point, pool);
+    }
+
+    /// Colours the tasks, after contacts were removed or added.
+    pub(super) fn finish(&mut self, blocks: u32) {
+        self.point_face.finish(blocks);
+        self.edge_edge.finish(blocks);
+        self.point_edge.finish(blocks);
+        self.point_point.finish(blocks);
     }
 
     /// Renumbers the rows of points; contacts of a point without a number are removed.
-    pub(super) fn renumber(
-        &mut self,
-        number: &impl Fn(u32) -> Option<u32>,
-        blocks: Blocks<'_>,
-        order: &mut Vec<Place>,
-    ) {
-        self.point_face.renumber(number, blocks, order);
-        self.edge_edge.renumber(number, blocks, order);
-        self.point_edge.renumber(number, blocks, order);
-        self.point_point.renumber(number, blocks, order);
+    pub(super) fn renumber(&mut self, number: &impl Fn(u32) -> Option<u32>, blocks: Blocks<'_>) {
+        self.point_face.renumber(number, blocks);
+        self.edge_edge.renumber(number, blocks);
+        self.point_edge.renumber(number, blocks);
+        self.point_point.renumber(number, blocks);
     }
 
-    /// The number of contacts after an update.
+    /// Whether every contact stands in the task of its blocks.
+    pub fn is_sorted(&self, blocks: Blocks<'_>) -> bool {
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        point_face.is_sorted(blocks)
+            && edge_edge.is_sorted(blocks)
+            && point_edge.is_sorted(blocks)
+            && point_point.is_sorted(blocks)
+    }
+
+    /// The number of contacts.
     pub fn len(&self) -> u64 {
         let Self { point_face, edge_edge, point_edge, point_point } = self;
         (point_face.len() + edge_edge.len() + point_edge.len() + point_point.len()) as u64

@@ -201,7 +201,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// Whether this pass resolves it.
     #[inline(always)]
     pub(super) fn is_resolved(&self, step: &ClothStep<'_, R>) -> bool {
-        step.mask.is_empty() || self.is_disabled() || step.resolves(self.params.material)
+        step.mask.is_empty() || step.resolves(self.params.material)
     }
 
     /// The cloths of its two sides, given the number of materials.
@@ -279,34 +279,22 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         self.params.rest_limited
     }
 
-    /// Renumbers the rows of its points, or disables it where one has no number.
-    pub fn renumber(&mut self, number: impl Fn(u32) -> Option<u32>) {
-        match (self.ours.map(&number), self.theirs.map(&number)) {
-            (ours, theirs) if ours.iter().chain(&theirs).all(Option::is_some) => {
-                self.ours = ours.map(Option::unwrap_or_default);
-                self.theirs = theirs.map(Option::unwrap_or_default);
-            }
-            _ => self.disable(),
-        }
+    /// Whether motion bounds certify it.
+    pub fn is_certified(&self) -> bool {
+        self.params.certified
     }
 
-    /// Disables the contact.
-    pub fn disable(&mut self) {
-        // No gap is below this thickness, and no material has this index.
-        self.params.thickness = -R::ONE / R::MIN_DENOMINATOR;
-        self.params.material = u32::MAX;
+    /// The contact with other rows of its points; `None` where one has no number.
+    pub fn renumbered(&self, number: impl Fn(u32) -> Option<u32>) -> Option<Self> {
+        let (ours, theirs) = (self.ours.map(&number), self.theirs.map(&number));
+        let is_whole = ours.iter().chain(&theirs).all(Option::is_some);
+        let (ours, theirs) = (ours.map(Option::unwrap_or_default), theirs.map(Option::unwrap_or_default));
+        is_whole.then_some(Self { ours, theirs, ..*self })
     }
 
     /// Whether it refers to existing points and to an existing material.
     pub fn is_valid(&self, are_points: impl Fn(&[u32]) -> bool, materials: usize) -> bool {
-        are_points(&self.ours)
-            && are_points(&self.theirs)
-            && (self.is_disabled() || (self.params.material as usize) < materials)
-    }
-
-    /// Whether it is disabled.
-    pub fn is_disabled(&self) -> bool {
-        self.params.material == u32::MAX
+        are_points(&self.ours) && are_points(&self.theirs) && (self.params.material as usize) < materials
     }
 
     /// The distance between the two, over their contact thickness.

@@ -5,13 +5,12 @@ use std::ops::Range;
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
+use crate::contact::cloth::found_contacts::FoundContacts;
 use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::local_anchors::LocalAnchors;
 use crate::contact::cloth::motion_bounds::Trajectories;
-use crate::contact::cloth::query::FoundContacts;
 use crate::contact::cloth::search::{RefreshKind, SearchInput};
 use crate::contact::cloth::untangling::Untangling;
-use crate::contact::colouring::Place;
 use crate::contact::material::ContactMaterial;
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
@@ -92,7 +91,7 @@ impl<R: Real> ClothContacts<R> {
             true => kept.binary_search(&(row - points.start)).ok().map(|at| points.start + at as u32),
             false => Some(row),
         };
-        cache.renumber(&number, (&elements.block, elements.blocks), &mut buffers.orders[0]);
+        cache.renumber(&number, (&elements.block, elements.blocks));
     }
 
     /// Has the pairs searched anew that other materials than `before` may find, from one side each: of cloths with other
@@ -204,8 +203,6 @@ pub struct SearchBuffers<R> {
     pub(super) groups: Vec<u32>,
     /// Which points of each group have new bounds.
     pub(super) new_bounds: Vec<NewBounds>,
-    /// The orders of contacts that are being sorted.
-    pub(super) orders: [Vec<Place>; 2],
     /// Whether a point of each block violated its bound.
     pub(super) has_violations: Vec<bool>,
     /// The candidates that each task has found.
@@ -214,6 +211,8 @@ pub struct SearchBuffers<R> {
 
 /// Groups in a task.
 pub(super) const GROUPS_PER_TASK: usize = 16;
+/// Search tasks whose candidates are held at a time.
+pub(super) const TASKS_AT_A_TIME: usize = 64;
 
 impl<R> Default for SearchBuffers<R> {
     fn default() -> Self {
@@ -224,7 +223,6 @@ impl<R> Default for SearchBuffers<R> {
             changed: Vec::new(),
             groups: Vec::new(),
             new_bounds: Vec::new(),
-            orders: Default::default(),
             has_violations: Vec::new(),
             tasks: Vec::new(),
         }

@@ -8,7 +8,8 @@
 //! | the trajectory and radius that bound each point over a candidate interval | [`motion_bounds`] |
 //! | broad phase: predicts motion bounds, and searches where points violate theirs | [`broad_phase`] |
 //! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`], [`new_elements`], [`swept_points`] |
-//! | the contacts by kind, in batches that threads share | [`cache`], [`batches`] |
+//! | what a search task finds | [`found_contacts`] |
+//! | the contacts by kind, in tasks that threads share | [`cache`], [`contact_list`], [`contact_task`] |
 //! | one contact | [`contact`] |
 //! | a fast lower bound on its gap | [`local_anchors`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
@@ -16,14 +17,16 @@
 //! | intersecting meshes: detection, and untangling | [`intersections`], [`untangling`] |
 //! | the passes of a time step | [`pass`] |
 
-pub mod batches;
 pub mod broad_phase;
 pub mod cache;
 mod certify;
 pub mod contact;
+pub mod contact_list;
+pub mod contact_task;
 pub mod contacts;
 mod element_bounds;
 pub mod elements;
+pub mod found_contacts;
 mod group_bounds;
 pub mod intersections;
 pub mod local_anchors;

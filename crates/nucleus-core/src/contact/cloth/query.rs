@@ -3,6 +3,7 @@
 use crate::contact::box_row::BoxRow;
 use crate::contact::cloth::contact::{Candidate, ContactParams, positions};
 use crate::contact::cloth::elements::NewBounds;
+use crate::contact::cloth::found_contacts::{FoundContacts, FoundPairs};
 use crate::contact::cloth::new_elements::{NewElement, NewElements, NewRow};
 use crate::contact::cloth::search::{ClothSearch, SearchInput, SearchedGroup};
 use crate::contact::cloth::swept_points::ElementPoints;
@@ -10,58 +11,6 @@ use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::shortest_line;
 use crate::input::frame::Elements;
 use crate::math::Real;
-
-/// The candidates that a search task finds.
-#[derive(Debug)]
-pub struct FoundContacts<R> {
-    /// Points and faces.
-    pub point_face: FoundPairs<R, 1, 3>,
-    /// Edges and edges.
-    pub edge_edge: FoundPairs<R, 2, 2>,
-    /// Points and edges.
-    pub point_edge: FoundPairs<R, 1, 2>,
-    /// Points and points.
-    pub point_point: FoundPairs<R, 1, 1>,
-    /// The elements with new bounds of the group that is searched.
-    pub(super) new_elements: NewElements,
-}
-
-/// Pairs of elements of one kind.
-#[derive(Debug)]
-pub struct FoundPairs<R, const N: usize, const M: usize> {
-    /// Those that can touch.
-    pub candidates: Vec<Candidate<R, N, M>>,
-    /// Those whose boxes overlap, before the narrow phase.
-    overlapping: Vec<ElementPoints<N, M>>,
-}
-
-impl<R, const N: usize, const M: usize> Default for FoundPairs<R, N, M> {
-    fn default() -> Self {
-        Self { candidates: Vec::new(), overlapping: Vec::new() }
-    }
-}
-
-impl<R> Default for FoundContacts<R> {
-    fn default() -> Self {
-        Self {
-            point_face: FoundPairs::default(),
-            edge_edge: FoundPairs::default(),
-            point_edge: FoundPairs::default(),
-            point_point: FoundPairs::default(),
-            new_elements: NewElements::default(),
-        }
-    }
-}
-
-impl<R> FoundContacts<R> {
-    /// Removes all, keeps the capacity.
-    pub fn clear(&mut self) {
-        self.point_face.candidates.clear();
-        self.edge_edge.candidates.clear();
-        self.point_edge.candidates.clear();
-        self.point_point.candidates.clear();
-    }
-}
 
 impl<R: Real> ClothPair<'_, R> {
     /// Finds all overlapping boxes of a group's elements that have new bounds with the elements of another group. Where both
@@ -109,7 +58,7 @@ impl<R: Real> ClothPair<'_, R> {
     }
 
     fn find_contacts_of<const N: usize, const M: usize>(&self, found: &mut FoundPairs<R, N, M>) {
-        let FoundPairs { candidates, overlapping } = found;
+        let FoundPairs { candidates, overlapping, .. } = found;
         let known = candidates.len();
         let [thickness, range] = self.thickness_and_range;
         let (points, share) = (self.search.bounds.swept_points(), self.search.input.interval_share as f32);
