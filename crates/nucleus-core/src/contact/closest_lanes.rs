@@ -1,26 +1,29 @@
-//! Closest points of four pairs of elements at a time, in double precision and without branches (Ericson 2005, §5.1).
+//! Closest points of four pairs of elements at a time, without branches (Ericson 2005, §5.1).
 
 use crate::math::{Lanes as _, Real, dot, sub};
 
 /// Four numbers, one for each pair.
-pub type Four = <f64 as Real>::Lanes;
+pub type Four<R> = <R as Real>::Lanes;
 
 /// Four positions, one for each pair.
-pub type FourPositions = [Four; 3];
+pub type FourPositions<R> = [Four<R>; 3];
 
-/// The closest points of two elements of each pair, as weights of their points: point and face (either way round), edge and
-/// edge.
+/// The closest points of two elements of each pair, as weights of their points: point and point, point and edge, point and
+/// face (either way round), edge and edge.
 #[inline(always)]
-pub fn closest<const N: usize, const M: usize>(
-    x: [FourPositions; N],
-    q: [FourPositions; M],
-) -> ([Four; N], [Four; M]) {
-    let (mut b, mut c) = ([Four::splat(1.0); N], [Four::splat(1.0); M]);
+pub fn closest<R: Real, const N: usize, const M: usize>(
+    x: [FourPositions<R>; N],
+    q: [FourPositions<R>; M],
+) -> ([Four<R>; N], [Four<R>; M]) {
+    let one = R::Lanes::splat(R::ONE);
+    let (mut b, mut c) = ([one; N], [one; M]);
     match (N, M) {
-        (1, 3) => c.copy_from_slice(&closest_on_triangle(x[0], [q[0], q[1], q[2]])),
-        (3, 1) => b.copy_from_slice(&closest_on_triangle(q[0], [x[0], x[1], x[2]])),
+        (1, 2) => c.copy_from_slice(&closest_on_segment::<R>(x[0], [q[0], q[1]])),
+        (2, 1) => b.copy_from_slice(&closest_on_segment::<R>(q[0], [x[0], x[1]])),
+        (1, 3) => c.copy_from_slice(&closest_on_triangle::<R>(x[0], [q[0], q[1], q[2]])),
+        (3, 1) => b.copy_from_slice(&closest_on_triangle::<R>(q[0], [x[0], x[1], x[2]])),
         (2, 2) => {
-            let (first, second) = closest_on_segments([x[0], x[1]], [q[0], q[1]]);
+            let (first, second) = closest_on_segments::<R>([x[0], x[1]], [q[0], q[1]]);
             b.copy_from_slice(&first);
             c.copy_from_slice(&second);
         }
@@ -31,10 +34,13 @@ pub fn closest<const N: usize, const M: usize>(
 
 /// The point of an element with these weights.
 #[inline(always)]
-pub fn interpolate<const K: usize>(points: &[FourPositions; K], weights: &[Four; K]) -> FourPositions {
-    let mut sum = scaled(points[0], weights[0]);
+pub fn interpolate<R: Real, const K: usize>(
+    points: &[FourPositions<R>; K],
+    weights: &[Four<R>; K],
+) -> FourPositions<R> {
+    let mut sum = scaled::<R>(points[0], weights[0]);
     for k in 1..K {
-        let next = scaled(points[k], weights[k]);
+        let next = scaled::<R>(points[k], weights[k]);
         sum = [sum[0] + next[0], sum[1] + next[1], sum[2] + next[2]];
     }
     sum
@@ -42,40 +48,51 @@ pub fn interpolate<const K: usize>(points: &[FourPositions; K], weights: &[Four;
 
 /// A triple times a number.
 #[inline(always)]
-pub fn scaled([x, y, z]: FourPositions, by: Four) -> FourPositions {
+pub fn scaled<R: Real>([x, y, z]: FourPositions<R>, by: Four<R>) -> FourPositions<R> {
     [x * by, y * by, z * by]
+}
+
+/// The point of the segment closest to `p`, as weights of its ends.
+#[inline(always)]
+fn closest_on_segment<R: Real>(p: FourPositions<R>, [a, b]: [FourPositions<R>; 2]) -> [Four<R>; 2] {
+    let along = sub(b, a);
+    let t = clamp01::<R>(ratio::<R>(dot(sub(p, a), along), dot(along, along)));
+    [R::Lanes::splat(R::ONE) - t, t]
 }
 
 /// The closest points of two segments, as weights of the ends of each.
 #[inline(always)]
-fn closest_on_segments([a, b]: [FourPositions; 2], [c, d]: [FourPositions; 2]) -> ([Four; 2], [Four; 2]) {
+fn closest_on_segments<R: Real>(
+    [a, b]: [FourPositions<R>; 2],
+    [c, d]: [FourPositions<R>; 2],
+) -> ([Four<R>; 2], [Four<R>; 2]) {
     let (u, v, r) = (sub(b, a), sub(d, c), sub(a, c));
     let (uu, vv, uv) = (dot(u, u), dot(v, v), dot(u, v));
     let (ur, vr) = (dot(u, r), dot(v, r));
-    let (zero, one) = (Four::splat(0.0), Four::splat(1.0));
+    let (zero, one) = (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE));
     let denominator = uu * vv - uv * uv;
     // Parallel within rounding error: any point of the overlap is equally close.
-    let skew = denominator - Four::splat(16.0 * f64::EPSILON) * uu * vv;
-    let first = skew.choose_by_sign(clamp01((uv * vr - ur * vv) / denominator), zero);
-    let second = clamp01(ratio(uv * first + vr, vv));
-    let s = clamp01(ratio(uv * second - ur, uu));
-    let t = clamp01(ratio(uv * s + vr, vv));
+    let skew = denominator - R::Lanes::splat(R::from_f64(16.0) * R::EPSILON) * uu * vv;
+    let first = skew.choose_by_sign(clamp01::<R>((uv * vr - ur * vv) / denominator), zero);
+    let second = clamp01::<R>(ratio::<R>(uv * first + vr, vv));
+    let s = clamp01::<R>(ratio::<R>(uv * second - ur, uu));
+    let t = clamp01::<R>(ratio::<R>(uv * s + vr, vv));
     ([one - s, s], [one - t, t])
 }
 
 /// The point of the triangle closest to `p`, as weights of its corners: inside, or the closest of its edges.
 #[inline(always)]
-fn closest_on_triangle(p: FourPositions, [a, b, c]: [FourPositions; 3]) -> [Four; 3] {
-    let (zero, one) = (Four::splat(0.0), Four::splat(1.0));
+fn closest_on_triangle<R: Real>(p: FourPositions<R>, [a, b, c]: [FourPositions<R>; 3]) -> [Four<R>; 3] {
+    let (zero, one) = (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE));
     let (ab, ac, bc) = (sub(b, a), sub(c, a), sub(c, b));
     let (ap, bp, cp) = (sub(p, a), sub(p, b), sub(p, c));
     let (d1, d2, d3) = (dot(ab, ap), dot(ac, ap), dot(ab, bp));
     let (d4, d5, d6) = (dot(ac, bp), dot(ab, cp), dot(ac, cp));
-    let along_ab = clamp01(ratio(d1, d1 - d3));
-    let along_ac = clamp01(ratio(d2, d2 - d6));
-    let along_bc = clamp01(ratio(d4 - d3, (d4 - d3) + (d5 - d6)));
-    let squared = |from: FourPositions, edge: FourPositions, along: Four| {
-        let line = sub(from, scaled(edge, along));
+    let along_ab = clamp01::<R>(ratio::<R>(d1, d1 - d3));
+    let along_ac = clamp01::<R>(ratio::<R>(d2, d2 - d6));
+    let along_bc = clamp01::<R>(ratio::<R>(d4 - d3, (d4 - d3) + (d5 - d6)));
+    let squared = |from: FourPositions<R>, edge: FourPositions<R>, along: Four<R>| {
+        let line = sub(from, scaled::<R>(edge, along));
         dot(line, line)
     };
     let (to_ab, to_ac, to_bc) =
@@ -91,7 +108,7 @@ fn closest_on_triangle(p: FourPositions, [a, b, c]: [FourPositions; 3]) -> [Four
     }
     let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
     let (inside, sum) = (va.least(vb).least(vc), va + vb + vc);
-    let (v, w) = (ratio(vb, sum), ratio(vc, sum));
+    let (v, w) = (ratio::<R>(vb, sum), ratio::<R>(vc, sum));
     let mut weights = [one - v - w, v, w];
     for k in 0..3 {
         weights[k] = inside.choose_by_sign(weights[k], on_edges[k]);
@@ -100,14 +117,14 @@ fn closest_on_triangle(p: FourPositions, [a, b, c]: [FourPositions; 3]) -> [Four
 }
 
 #[inline(always)]
-fn clamp01(x: Four) -> Four {
-    x.most(Four::splat(0.0)).least(Four::splat(1.0))
+fn clamp01<R: Real>(x: Four<R>) -> Four<R> {
+    x.most(R::Lanes::splat(R::ZERO)).least(R::Lanes::splat(R::ONE))
 }
 
 /// A quotient; zero where the denominator is not above zero (an element that has shrunk to a point).
 #[inline(always)]
-fn ratio(numerator: Four, denominator: Four) -> Four {
-    denominator.choose_by_sign(numerator / denominator, Four::splat(0.0))
+fn ratio<R: Real>(numerator: Four<R>, denominator: Four<R>) -> Four<R> {
+    denominator.choose_by_sign(numerator / denominator, R::Lanes::splat(R::ZERO))
 }
 
 #[cfg(test)]
@@ -126,10 +143,11 @@ mod tests {
 
     /// The distances of one pair: by lanes, in which it stands beside another pair, and by itself.
     fn distances<const N: usize, const M: usize>(x: Points<N>, q: Points<M>, beside: f64) -> [f64; 2] {
-        let splat = |p: [f64; 3]| p.map(|p| Four::from_array([beside - p, p, beside, p + beside]));
+        let splat =
+            |p: [f64; 3]| p.map(|p| <f64 as Real>::Lanes::from_array([beside - p, p, beside, p + beside]));
         let (ours, theirs) = (x.map(splat), q.map(splat));
-        let (b, c) = closest(ours, theirs);
-        let line = sub(interpolate(&ours, &b), interpolate(&theirs, &c));
+        let (b, c) = closest::<f64, N, M>(ours, theirs);
+        let line = sub(interpolate::<f64, N>(&ours, &b), interpolate::<f64, M>(&theirs, &c));
         let by_lanes = dot(line, line).to_array()[1].sqrt();
         let (_, _, alone) = narrow_phase::shortest_line((x, q));
         [by_lanes, alone]
@@ -142,10 +160,10 @@ mod tests {
     #[target_feature(enable = "avx2")]
     #[allow(unsafe_code)]
     unsafe fn closest_avx2<const N: usize, const M: usize>(
-        x: [FourPositions; N],
-        q: [FourPositions; M],
-    ) -> ([Four; N], [Four; M]) {
-        closest(x, q)
+        x: [FourPositions<f64>; N],
+        q: [FourPositions<f64>; M],
+    ) -> ([Four<f64>; N], [Four<f64>; M]) {
+        closest::<f64, N, M>(x, q)
     }
 
     proptest! {
@@ -158,15 +176,22 @@ mod tests {
         }
 
         #[test]
+        fn four_points_and_edges_are_as_far_apart_as_each_pair_alone(p in position(), e in proptest::array::uniform2(position()), beside in -1.0..1.0f64) {
+            for [by_lanes, alone] in [distances([p], e, beside), distances(e, [p], beside), distances([p], [e[0]], beside)] {
+                prop_assert!((by_lanes - alone).abs() < 1e-9, "{by_lanes} {alone}");
+            }
+        }
+
+        #[test]
         #[cfg(target_arch = "x86_64")]
         fn lanes_have_the_same_bits_with_avx2(t in proptest::array::uniform4(proptest::array::uniform3(-2.0..2.0f64)), beside in -1.0..1.0f64) {
             if std::arch::is_x86_feature_detected!("avx2") {
-                let four = |p: [f64; 3]| p.map(|p| Four::from_array([p, p * beside, beside - p, p + beside]));
+                let four = |p: [f64; 3]| p.map(|p| <f64 as Real>::Lanes::from_array([p, p * beside, beside - p, p + beside]));
                 let [p, a, b, c] = t.map(four);
                 // SAFETY: the processor has AVX2.
                 #[allow(unsafe_code)]
                 let with = unsafe { (closest_avx2([p], [a, b, c]), closest_avx2([p, a], [b, c])) };
-                prop_assert_eq!(with, (closest([p], [a, b, c]), closest([p, a], [b, c])));
+                prop_assert_eq!(with, (closest::<f64, 1, 3>([p], [a, b, c]), closest::<f64, 2, 2>([p, a], [b, c])));
             }
         }
 

@@ -6,7 +6,7 @@ use crate::math::{Real, add, cross, dot, scale, sub, unit};
 pub type ElementPositions<R, const N: usize, const M: usize> = ([[R; 3]; N], [[R; 3]; M]);
 
 /// Lengths in metres below which two elements coincide.
-const COINCIDENT: f64 = 1e-12;
+pub const COINCIDENT: f64 = 1e-12;
 
 /// The closest points of two elements, as weights of their points: point and point, point and edge, point and
 /// face (either way round), edge and edge.

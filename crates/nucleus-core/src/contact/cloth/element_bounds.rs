@@ -89,22 +89,21 @@ impl ElementBounds {
     pub fn swept_points(&self) -> &SweptPoints {
         &self.swept_points
     }
+}
 
-    /// The contact distance of two elements, if they can come closer than `range` times the thickness from a
-    /// share of the candidate interval on. `rest` holds positions at rest, for elements of one cloth.
+impl ContactDistance {
+    /// That of two elements that stay at least `least` metres apart, if they can come closer than `range` times the thickness.
+    /// `rest` holds positions at rest, for elements of one cloth.
     #[inline(always)]
-    pub fn contact_distance<const N: usize, const M: usize>(
-        &self,
-        points: ElementPoints<N, M>,
-        share: f32,
+    pub fn new<const N: usize, const M: usize>(
+        (ours, theirs): ElementPoints<N, M>,
+        least: f32,
         [thickness, range]: [f32; 2],
         rest: Option<&[[f32; 3]]>,
-    ) -> Option<ContactDistance> {
-        let least = self.swept_points.min_distance(points, share);
+    ) -> Option<Self> {
         if least >= thickness * range {
             return None;
         }
-        let (ours, theirs) = points;
         let resting = |rest: &[[f32; 3]]| {
             (ours.map(|point| rest[point as usize]), theirs.map(|point| rest[point as usize]))
         };
@@ -115,7 +114,7 @@ impl ElementBounds {
         }
         let contact_distance = thickness.min(at_rest * REST_GAP_SHARE);
         let certified = least > contact_distance * CERTIFIED_GAP;
-        (least < contact_distance * range).then_some(ContactDistance {
+        (least < contact_distance * range).then_some(Self {
             thickness: contact_distance,
             rest_limited: contact_distance < thickness,
             certified,

@@ -7,7 +7,7 @@
 //! | the elements of all cloths in groups, under a BVH for each cloth | [`elements`] |
 //! | the trajectory and radius that bound each point over a candidate interval | [`motion_bounds`] |
 //! | broad phase: predicts motion bounds, and searches where points violate theirs | [`broad_phase`] |
-//! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`], [`new_elements`], [`swept_points`] |
+//! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`element_bounds`], [`group_bounds`], [`new_elements`], [`swept_points`], [`normals`] |
 //! | what a search task finds | [`found_contacts`] |
 //! | the contacts by kind, in tasks that threads share | [`cache`], [`contact_list`], [`contact_task`] |
 //! | one contact | [`contact`] |
@@ -32,6 +32,7 @@ pub mod intersections;
 pub mod local_anchors;
 pub mod motion_bounds;
 mod new_elements;
+mod normals;
 pub mod pass;
 mod query;
 pub mod response;

@@ -3,9 +3,9 @@
 
 use std::ops::Range;
 
+use crate::contact::closest_lanes::{Four, closest, interpolate};
 use crate::contact::cloth::motion_bounds::Trajectory;
-use crate::contact::narrow_phase::{gap_along, shortest_line};
-use crate::math::{Lanes as _, Real, add, dot, scale, sub};
+use crate::math::{Lanes as _, Real, dot, sub};
 use crate::particles::population::close_up;
 
 /// The points of two elements.
@@ -52,38 +52,25 @@ impl SweptPoints {
         [(start, radius), (end, radius)]
     }
 
-    /// A lower bound on the distance of two elements in metres, from a share of the candidate interval on.
+    /// Lower bounds on the distances of up to four pairs in metres, from a share of the candidate interval on.
     #[inline(always)]
-    pub fn min_distance<const N: usize, const M: usize>(
+    pub fn min_distances<const N: usize, const M: usize>(
         &self,
-        (ours, theirs): ElementPoints<N, M>,
+        pairs: &[ElementPoints<N, M>],
         share: f32,
-    ) -> f32 {
-        let mut start = ([[0.0; 3]; N], [[0.0; 3]; M]);
-        let (mut end, mut radii) = (start, [0.0f32; 2]);
-        // Loops, because maps over these arrays are not inlined.
-        for k in 0..N {
-            let radius;
-            ([start.0[k], end.0[k]], radius) = self.ends_from(ours[k], share);
-            radii[0] = radii[0].max(radius);
-        }
-        for k in 0..M {
-            let radius;
-            ([start.1[k], end.1[k]], radius) = self.ends_from(theirs[k], share);
-            radii[1] = radii[1].max(radius);
-        }
-        let (normal, _, distance) = shortest_line(start);
-        distance.min(gap_along(normal, &end)) - (radii[0] + radii[1])
-    }
-
-    /// Position at a share of the candidate interval and at its end in metres from the common origin, and the radius.
-    #[inline(always)]
-    fn ends_from(&self, point: u32, share: f32) -> ([[f32; 3]; 2], f32) {
-        let xyz = |[x, y, z, _]: [f32; 4]| [x, y, z];
-        let [start, end] = self.ends[point as usize];
-        let (first, last) = (xyz(start), xyz(end));
-        let first = if share > 0.0 { add(first, scale(sub(last, first), share)) } else { first };
-        ([first, last], start[3])
+    ) -> [f32; 4] {
+        let (ours, theirs) = self.four_pairs(pairs, share);
+        let starts = (ours.map(|point| point.ends[0]), theirs.map(|point| point.ends[0]));
+        let weights = closest::<f32, N, M>(starts.0, starts.1);
+        let line =
+            sub(interpolate::<f32, N>(&starts.0, &weights.0), interpolate::<f32, M>(&starts.1, &weights.1));
+        let length = dot(line, line).sqrt();
+        let (zero, one) = (FourLanes::splat(0.0), FourLanes::splat(1.0));
+        let per_length = length.choose_by_sign(one / length, zero);
+        let normal = line.map(|axis| axis * per_length);
+        let radii = largest_radius(&ours) + largest_radius(&theirs);
+        let least = length.least(gap_along(normal, (&ours, &theirs), 1)) - radii;
+        least.to_array()
     }
 
     /// One bit for each of up to four pairs that keep `enough` metres from a share of the candidate interval on, along the
@@ -95,6 +82,21 @@ impl SweptPoints {
         share: f32,
         enough: f32,
     ) -> u32 {
+        let (ours, theirs) = self.four_pairs(pairs, share);
+        let line = sub(centroids(&ours), centroids(&theirs));
+        let [start, end] = [0, 1].map(|end| gap_along(line, (&ours, &theirs), end));
+        let needed = FourLanes::splat(enough) + largest_radius(&ours) + largest_radius(&theirs);
+        let length = dot(line, line).sqrt();
+        !(needed * length - start.least(end)).above_zero() & length.above_zero()
+    }
+
+    /// The points of up to four pairs by lane; the first pair fills the lanes that are left.
+    #[inline(always)]
+    fn four_pairs<const N: usize, const M: usize>(
+        &self,
+        pairs: &[ElementPoints<N, M>],
+        share: f32,
+    ) -> ([FourPoints; N], [FourPoints; M]) {
         let [a, b, c, d] = [0, 1, 2, 3].map(|lane: usize| &pairs[if lane < pairs.len() { lane } else { 0 }]);
         let mut ours = [self.four([a.0[0], b.0[0], c.0[0], d.0[0]], share); N];
         for k in 1..N {
@@ -104,21 +106,7 @@ impl SweptPoints {
         for k in 1..M {
             theirs[k] = self.four([a.1[k], b.1[k], c.1[k], d.1[k]], share);
         }
-        let line = sub(centroids(&ours), centroids(&theirs));
-        let mut gaps = [FourLanes::splat(0.0); 2];
-        for (end, gap) in gaps.iter_mut().enumerate() {
-            let (mut low, mut high) = (dot(line, ours[0].ends[end]), dot(line, theirs[0].ends[end]));
-            for point in &ours[1..] {
-                low = low.least(dot(line, point.ends[end]));
-            }
-            for point in &theirs[1..] {
-                high = high.most(dot(line, point.ends[end]));
-            }
-            *gap = low - high;
-        }
-        let needed = FourLanes::splat(enough) + largest_radius(&ours) + largest_radius(&theirs);
-        let length = dot(line, line).sqrt();
-        !(needed * length - gaps[0].least(gaps[1])).above_zero() & length.above_zero()
+        (ours, theirs)
     }
 
     /// Four points by lane.
@@ -136,13 +124,30 @@ impl SweptPoints {
     }
 }
 
-type FourLanes = <f32 as Real>::Lanes;
+type FourLanes = Four<f32>;
 
 /// The swept positions of four points, by lane.
 #[derive(Clone, Copy)]
 struct FourPoints {
     ends: [[FourLanes; 3]; 2],
     radius: FourLanes,
+}
+
+/// The smallest gaps of four pairs along a direction each, at the start or at the end.
+#[inline(always)]
+fn gap_along<const N: usize, const M: usize>(
+    direction: [FourLanes; 3],
+    (ours, theirs): (&[FourPoints; N], &[FourPoints; M]),
+    end: usize,
+) -> FourLanes {
+    let (mut low, mut high) = (dot(direction, ours[0].ends[end]), dot(direction, theirs[0].ends[end]));
+    for point in &ours[1..] {
+        low = low.least(dot(direction, point.ends[end]));
+    }
+    for point in &theirs[1..] {
+        high = high.most(dot(direction, point.ends[end]));
+    }
+    low - high
 }
 
 /// The centroids of four elements at the start.
@@ -168,12 +173,19 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::contact::narrow_phase::shortest_line;
+    use crate::math::{add, scale};
 
     impl SweptPoints {
         /// The least distance of two elements without their radii, at both ends.
         fn nearest<const N: usize, const M: usize>(&self, pair: ElementPoints<N, M>, share: f32) -> f32 {
-            let ours = pair.0.map(|point| self.ends_from(point, share));
-            let theirs = pair.1.map(|point| self.ends_from(point, share));
+            let xyz = |[x, y, z, _]: [f32; 4]| [x, y, z];
+            let ends_from = |point: u32| {
+                let [start, end] = self.ends[point as usize];
+                let (first, last) = (xyz(start), xyz(end));
+                ([add(first, scale(sub(last, first), share)), last], start[3])
+            };
+            let (ours, theirs) = (pair.0.map(ends_from), pair.1.map(ends_from));
             let largest = |radius: f32, &(_, next): &([[f32; 3]; 2], f32)| radius.max(next);
             let radius = ours.iter().fold(0.0, largest) + theirs.iter().fold(0.0, largest);
             let at = |end: usize| shortest_line((ours.map(|p| p.0[end]), theirs.map(|p| p.0[end]))).2;
@@ -182,6 +194,30 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn least_distances_bound_the_motion_and_are_the_distance_without_motion(
+            ends in proptest::collection::vec(proptest::array::uniform2(proptest::array::uniform4(-1.0..1.0f32)), 20),
+            share in 0.0..1.0f32,
+            moves: bool,
+        ) {
+            let end = |[start, end]: [[f32; 4]; 2]| [start, if moves { end } else { start }];
+            let ends = ends.into_iter().map(|ends| end(ends).map(|[x, y, z, radius]| [x, y, z, 0.1 * radius.abs()])).collect();
+            let points = SweptPoints { ends };
+            let edges: Vec<ElementPoints<2, 2>> = (0..4).map(|k| ([4 * k, 4 * k + 1], [4 * k + 2, 4 * k + 3])).collect();
+            let faces: Vec<ElementPoints<1, 3>> = (0..4).map(|k| ([4 * k], [4 * k + 1, 4 * k + 2, 4 * k + 3])).collect();
+            let (of_edges, of_faces) = (points.min_distances(&edges, share), points.min_distances(&faces, share));
+            for lane in 0..4 {
+                let nearest = [points.nearest(edges[lane], share), points.nearest(faces[lane], share)];
+                for (least, nearest) in [of_edges[lane], of_faces[lane]].into_iter().zip(nearest) {
+                    prop_assert!(least <= nearest + 1e-5);
+                    // The direction of a short line is less exact.
+                    prop_assert!(moves || nearest < 0.1 || least >= nearest - 1e-4);
+                }
+                // A pair has the same bits by itself.
+                prop_assert_eq!(points.min_distances(&faces[lane..=lane], share)[0], of_faces[lane]);
+            }
+        }
+
         #[test]
         fn pairs_with_separated_centroids_are_at_least_that_far_apart(
             ends in proptest::collection::vec(proptest::array::uniform2(proptest::array::uniform4(-1.0..1.0f32)), 20),

@@ -4,11 +4,14 @@
 //! within the candidate interval, by the motion bounds of the cloth's points. With AVX2 the lanes are wider, found at run
 //! time; they give the same bits.
 
-use crate::contact::closest_lanes::{Four, FourPositions, closest, interpolate};
+use crate::contact::closest_lanes::{self, closest, interpolate};
 use crate::contact::collider::contact::{ColliderContact, Plane, cross_direction};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Lanes as _, Real, dot, sub};
+
+type Four = closest_lanes::Four<f64>;
+type FourPositions = closest_lanes::FourPositions<f64>;
 
 /// Two elements whose boxes overlap.
 #[derive(Debug, Clone, Copy)]
@@ -166,8 +169,11 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
 
     #[inline(always)]
     fn shortest_line(&self) -> FourLines<N, M> {
-        let weights = closest(self.ours, self.theirs);
-        let line = sub(interpolate(&self.ours, &weights.0), interpolate(&self.theirs, &weights.1));
+        let weights = closest::<f64, N, M>(self.ours, self.theirs);
+        let line = sub(
+            interpolate::<f64, N>(&self.ours, &weights.0),
+            interpolate::<f64, M>(&self.theirs, &weights.1),
+        );
         let length = dot(line, line).sqrt();
         let mut normal = line.map(|along| along / length);
         let apart = (length - Four::splat(TOUCHING)).above_zero();
