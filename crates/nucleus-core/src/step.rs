@@ -229,7 +229,7 @@ fn solve_time_step<R: CompiledReal>(
         || !solver.model.colliders.is_empty()
         || solver.contact.cloth_contacts.is_some();
     let can_touch = is_touchable && solver.contact.is_free.contains(&false);
-    solver.state.store_step_start(schedule.h, can_touch);
+    solver.state.store_step_start(schedule.h, can_touch, &solver.pool);
     whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
     predict(&solver.model.cloths, &mut solver.state, now, &solver.contact.is_free, &solver.pool);
     let Solver { model, state, contact, links, .. } = solver;

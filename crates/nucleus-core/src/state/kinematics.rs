@@ -10,6 +10,8 @@ use crate::state::State;
 
 /// Lane groups per task.
 const GROUPS_PER_TASK: u32 = 1024;
+/// Rows per task.
+const ROWS_PER_TASK: usize = 1024;
 
 impl<R: Real> State<R> {
     /// The wind carries the air, and with it the gusts.
@@ -42,20 +44,31 @@ impl<R: Real> State<R> {
     }
 
     /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible.
-    pub fn store_step_start(&mut self, h: f64, can_touch: bool) {
+    pub fn store_step_start(&mut self, h: f64, can_touch: bool, pool: &ThreadPool) {
         let Self {
             start, depenetration_by_collider, depenetration_by_cloth, displacement, displaced, ..
         } = self;
         displaced.clear();
-        // Also where contact has just become impossible: a ground plane can be keyed off.
-        depenetration_by_collider.clear();
-        depenetration_by_cloth.clear();
         self.step_length = h;
+        // Also where contact has just become impossible: a ground plane can be keyed off.
+        let rows = if can_touch { displacement.len() } else { 0 };
+        depenetration_by_collider.resize(rows, Row4::ZERO);
+        depenetration_by_cloth.resize(rows, Row4::ZERO);
         if can_touch {
-            start.clone_from(displacement);
-            depenetration_by_collider.resize(start.len(), Row4::ZERO);
-            depenetration_by_cloth.resize(start.len(), Row4::ZERO);
+            start.resize(rows, Row4::ZERO);
         }
+        let columns = [start, depenetration_by_collider, depenetration_by_cloth]
+            .map(|column| DisjointSlice::new(column));
+        pool.parallel_for(rows.div_ceil(ROWS_PER_TASK), |task| {
+            let own = task * ROWS_PER_TASK..rows.min((task + 1) * ROWS_PER_TASK);
+            // SAFETY: no two tasks have a row in common.
+            #[allow(unsafe_code)]
+            let [start, by_collider, by_cloth] =
+                columns.each_ref().map(|column| unsafe { column.run(own.start as u32..own.end as u32) });
+            start.copy_from_slice(&displacement[own]);
+            by_collider.fill(Row4::ZERO);
+            by_cloth.fill(Row4::ZERO);
+        });
     }
 }
 

@@ -202,12 +202,12 @@ fn find_candidates<R: Real>(
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;
-    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, has_violations, .. } = buffers;
+    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, violated, has_violations, .. } =
+        buffers;
     elements.find_new_bounds(groups, bounds_violated, new_bounds);
     has_violations.clear();
     has_violations.resize(elements.blocks as usize, false);
-    let violated = bounds_violated.iter().zip(&elements.block).filter(|(is_violated, _)| **is_violated);
-    violated.for_each(|(_, &block)| has_violations[block as usize] = true);
+    violated.iter().for_each(|&point| has_violations[elements.block[point as usize] as usize] = true);
     cache.remove(&Replaced { bounds_violated, has_violations }, pool);
     let search = ClothSearch {
         elements,

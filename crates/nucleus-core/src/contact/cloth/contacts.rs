@@ -151,15 +151,17 @@ impl<R: Real> ClothContacts<R> {
         refresh: RefreshKind,
         pool: &ThreadPool,
     ) {
-        let (anchors, points) = (input.anchors, || input.cloths.iter().flat_map(ClothModel::points));
+        let anchors = input.anchors;
         let Self { elements, bounds_violated, buffers, trajectories, local_anchors, .. } = self;
-        let SearchBuffers { bounds, group_bounds, bounds_margin, changed, groups, .. } = buffers;
-        let violated = points().filter(|&point| bounds_violated[point as usize]);
+        let SearchBuffers { bounds, group_bounds, bounds_margin, changed, groups, violated, .. } = buffers;
+        let points = input.cloths.iter().flat_map(ClothModel::points);
+        violated.clear();
+        violated.extend(points.clone().filter(|&point| bounds_violated[point as usize]));
         if refresh.is_incremental() {
-            bounds.update(anchors, trajectories, violated.clone(), changed);
+            bounds.update(anchors, trajectories, violated.iter().copied(), changed);
         } else {
             bounds.set_origin(anchors.first().copied().unwrap_or_default());
-            bounds.update(anchors, trajectories, points(), changed);
+            bounds.update(anchors, trajectories, points, changed);
         }
         group_bounds.resize_with(elements.groups.len(), GroupBounds::default);
         if bounds_margin.replace(margin) == Some(margin) {
@@ -185,8 +187,8 @@ impl<R: Real> ClothContacts<R> {
         });
         elements.swept_boxes = swept_boxes;
         elements.refit();
-        local_anchors.update(anchors, violated.clone(), elements.extent());
-        elements.groups_of(violated, groups);
+        local_anchors.update(anchors, violated.iter().copied(), elements.extent());
+        elements.groups_of(violated.iter().copied(), groups);
     }
 }
 
@@ -197,6 +199,8 @@ pub struct SearchBuffers<R> {
     pub(super) group_bounds: Vec<GroupBounds>,
     /// The margin in metres of all group bounds; `None` if they are out of date.
     bounds_margin: Option<f32>,
+    /// The points that violate their bounds.
+    pub(super) violated: Vec<u32>,
     /// The points whose bounds have changed.
     changed: Vec<u32>,
     /// The groups that are searched.
@@ -220,6 +224,7 @@ impl<R> Default for SearchBuffers<R> {
             bounds: ElementBounds::default(),
             group_bounds: Vec::new(),
             bounds_margin: None,
+            violated: Vec::new(),
             changed: Vec::new(),
             groups: Vec::new(),
             new_bounds: Vec::new(),

@@ -141,9 +141,12 @@ pub fn find_approaching_colliders<R: Real>(
     let corners = model.cloths[cloth].points().flat_map(|row| {
         let anchor = state.anchor[row as usize];
         let bound = contact.window_bounds[row as usize].map(|corner| corner.xyz().map(R::to_f64));
-        bound.into_iter().flat_map(move |corner| frame_motion.map(|by| add(add(anchor, corner), by)))
+        bound.map(|corner| add(anchor, corner))
     });
-    let cloth_box = bounding_box(corners);
+    let in_moving_frame = bounding_box(corners);
+    let cloth_box = bounding_box(
+        in_moving_frame.into_iter().flat_map(|corner| frame_motion.map(|by| add(corner.into(), by))),
+    );
     let mut any = false;
     for index in 0..contact.collider_contacts.len() {
         let ColliderContacts { cloth: of, collider, is_near, .. } = contact.collider_contacts[index];
