@@ -54,6 +54,10 @@ impl<R, const N: usize, const M: usize> Default for ContactTasks<R, N, M> {
     }
 }
 
+/// Pairs of neighbours for each of many blocks in a space: itself, and half of 26. Empty tasks beyond them are of blocks that
+/// have moved apart.
+const NEIGHBOURS: usize = 14;
+
 /// The block of each point, and the number of blocks.
 pub type Blocks<'a> = (&'a [u32], u32);
 
@@ -228,9 +232,13 @@ impl<R: Real, const N: usize, const M: usize> ContactTasks<R, N, M> {
         });
     }
 
-    /// Colours the tasks with contacts.
+    /// Colours the tasks with contacts. Those without are dropped once they are more than blocks in space have neighbours.
     fn finish(&mut self, blocks: u32) {
         let Self { tasks, filled, colouring } = self;
+        let count = tasks.iter().filter(|task| !task.contacts().is_empty()).count();
+        if tasks.len() - count > NEIGHBOURS * blocks as usize {
+            tasks.retain(|task| !task.contacts().is_empty());
+        }
         filled.clear();
         filled.extend((0..).zip(&*tasks).filter(|(_, task)| !task.contacts().is_empty()).map(|(at, _)| at));
         colouring.assign(filled.iter().map(|&at| tasks[at as usize].blocks), blocks);
@@ -239,7 +247,13 @@ impl<R: Real, const N: usize, const M: usize> ContactTasks<R, N, M> {
     /// The number of contacts without certificate. Marks their cloths. Needs no colours, because it moves no point.
     fn certify(&mut self, step: &ClothStep<'_, R>, unproven: &[AtomicBool], pool: &ThreadPool) -> u64 {
         let count = AtomicU64::new(0);
-        self.for_tasks(pool, |task| {
+        let Self { tasks, filled, .. } = self;
+        let tasks = DisjointSlice::new(tasks);
+        pool.parallel_for(filled.len(), |task| {
+            let at = filled[task];
+            // SAFETY: every task is run once.
+            #[allow(unsafe_code)]
+            let [task] = (unsafe { tasks.run(at..at + 1) }) else { return };
             let unproven_here = task.certify(step, unproven);
             if unproven_here > 0 {
                 count.fetch_add(unproven_here, Ordering::Relaxed);
@@ -349,6 +363,24 @@ mod tests {
             let kept = before.into_iter().filter(|pair| !pair.iter().any(|&point| violated[point as usize]));
             prop_assert_eq!(points_of(&left), kept.collect::<Vec<_>>());
         }
+    }
+
+    #[test]
+    fn tasks_of_blocks_that_have_moved_apart_are_dropped() {
+        let block: Vec<u32> = (0..200).collect();
+        let (blocks, pool) = ((&block[..], 200), ThreadPool::new(1));
+        let mut list = ContactList::<f32, 1, 1>::default();
+        for other in (1..199).step_by(2) {
+            let met: Vec<[u32; 2]> =
+                (0..200).filter(|&point| point != other).map(|point| [2 * (point / 2), other]).collect();
+            list.add(&[found(&met, blocks)], |found| &found.point_point, &pool);
+            list.finish(200);
+            assert_eq!(list.len(), 199);
+            let all = Replaced { bounds_violated: &[true; 200], has_violations: &[true; 200] };
+            list.remove(&all, &pool);
+        }
+        list.finish(200);
+        assert!(list.cloth.tasks.len() <= NEIGHBOURS * 200, "{}", list.cloth.tasks.len());
     }
 
     #[test]
