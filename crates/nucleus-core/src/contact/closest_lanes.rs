@@ -8,6 +8,12 @@ pub type Four<R> = <R as Real>::Lanes;
 /// Four positions, one for each pair.
 pub type FourPositions<R> = [Four<R>; 3];
 
+/// The pair of a lane; the first fills the lanes that are left.
+#[inline(always)]
+pub fn of_lane<T>(pairs: &[T], lane: usize) -> &T {
+    &pairs[if lane < pairs.len() { lane } else { 0 }]
+}
+
 /// The closest points of two elements of each pair, as weights of their points: point and point, point and edge, point and
 /// face (either way round), edge and edge.
 #[inline(always)]

@@ -30,12 +30,9 @@ pub struct FoundPairs<R, const N: usize, const M: usize> {
     /// Those whose boxes overlap, before the narrow phase.
     pub(super) overlapping: Vec<ElementPoints<N, M>>,
     runs: Vec<CandidateRun>,
-    /// The place of each candidate in the order of the runs.
-    order: Vec<Place>,
+    /// The order of the runs: whether a candidate is of a free point, the blocks of its task, and its index.
+    order: Vec<((bool, [u32; 2]), u32)>,
 }
-
-/// Whether a candidate is of a free point, the blocks of its task, and its index.
-type Place = ((bool, [u32; 2]), u32);
 
 /// Candidates of one contact task.
 #[derive(Debug, Clone)]

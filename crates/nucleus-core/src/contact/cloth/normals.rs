@@ -1,6 +1,6 @@
 //! The normals of new contacts, four at a time.
 
-use crate::contact::closest_lanes::{closest, interpolate};
+use crate::contact::closest_lanes::{closest, interpolate, of_lane};
 use crate::contact::cloth::contact::{Candidate, positions};
 use crate::contact::narrow_phase::{COINCIDENT, shortest_line};
 use crate::math::{Lanes as _, Real, Row4, dot, sub};
@@ -18,7 +18,7 @@ pub(super) fn set_normals<R: Real, const N: usize, const M: usize>(
     };
     let (mut ours, mut theirs) = ([[[R::ZERO; 4]; 3]; N], [[[R::ZERO; 4]; 3]; M]);
     for lane in 0..4 {
-        let at = at(&four[if lane < four.len() { lane } else { 0 }]);
+        let at = at(of_lane(four, lane));
         for axis in 0..3 {
             for k in 0..N {
                 ours[k][axis][lane] = at.0[k][axis];

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::contact::closest_lanes::{Four, closest, interpolate};
+use crate::contact::closest_lanes::{Four, closest, interpolate, of_lane};
 use crate::contact::cloth::motion_bounds::Trajectory;
 use crate::math::{Lanes as _, Real, dot, sub};
 use crate::particles::population::close_up;
@@ -97,7 +97,7 @@ impl SweptPoints {
         pairs: &[ElementPoints<N, M>],
         share: f32,
     ) -> ([FourPoints; N], [FourPoints; M]) {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|lane: usize| &pairs[if lane < pairs.len() { lane } else { 0 }]);
+        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| of_lane(pairs, lane));
         let mut ours = [self.four([a.0[0], b.0[0], c.0[0], d.0[0]], share); N];
         for k in 1..N {
             ours[k] = self.four([a.0[k], b.0[k], c.0[k], d.0[k]], share);

@@ -4,9 +4,10 @@
 //! within the candidate interval, by the motion bounds of the cloth's points. With AVX2 the lanes are wider, found at run
 //! time; they give the same bits.
 
-use crate::contact::closest_lanes::{self, closest, interpolate};
+use crate::contact::closest_lanes::{self, closest, interpolate, of_lane};
 use crate::contact::collider::contact::{ColliderContact, Plane, cross_direction};
 use crate::contact::collider::motion_bounds::MotionBounds;
+use crate::contact::narrow_phase::COINCIDENT;
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Lanes as _, Real, dot, sub};
 
@@ -113,15 +114,6 @@ struct CandidatePlanes<const N: usize> {
     offsets: [[Four; N]; 2],
 }
 
-/// The pair of a lane; the first fills the lanes that are left.
-#[inline(always)]
-fn of_lane<T>(pairs: &[T], lane: usize) -> &T {
-    &pairs[if lane < pairs.len() { lane } else { 0 }]
-}
-
-/// Lengths in metres below which two elements touch.
-const TOUCHING: f64 = 1e-12;
-
 impl<const N: usize, const M: usize> FourPairs<N, M> {
     /// Gathers up to four pairs.
     #[inline(always)]
@@ -176,7 +168,7 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
         );
         let length = dot(line, line).sqrt();
         let mut normal = line.map(|along| along / length);
-        let apart = (length - Four::splat(TOUCHING)).above_zero();
+        let apart = (length - Four::splat(COINCIDENT)).above_zero();
         if apart != 0b1111 {
             self.set_touching(&mut normal, !apart);
         }
