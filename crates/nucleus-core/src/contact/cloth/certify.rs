@@ -21,7 +21,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// it. A pair that was not separated at the start of the step is accepted.
     #[inline]
     pub fn certify(&mut self, step: &ClothStep<'_, R>) -> bool {
-        if self.params.certified || self.certainly_exceeds(step, R::ZERO) {
+        if self.is_certified() || self.certainly_exceeds(step, R::ZERO) {
             return true;
         }
         let now = self.end_positions(step);

@@ -109,16 +109,51 @@ impl<R: Real> ClothStep<'_, R> {
 pub struct ContactParams<R> {
     /// Contact thickness in metres: the largest value under the vertex maps.
     pub thickness: R,
-    /// Index of the contact material.
-    pub material: u32,
-    /// Whether the thickness is reduced, because the two are neighbours at rest.
-    pub rest_limited: bool,
-    /// Whether motion bounds certify that the two keep a gap.
-    pub certified: bool,
-    /// Whether one side is a free point, which can move many times its size in a step.
-    pub has_free_point: bool,
-    /// Whether it has a friction anchor.
-    pub has_anchor: bool,
+    /// The material, and what is known of the contact.
+    pub kind: ContactKind,
+}
+
+/// The index of a contact's material, and what is known of the contact, in one word: contacts are most of the memory of a
+/// heap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ContactKind {
+    word: u32,
+}
+
+impl ContactKind {
+    /// The thickness is reduced, because the two are neighbours at rest.
+    pub const REST_LIMITED: u32 = 1 << 31;
+    /// Motion bounds certify that the two keep a gap.
+    pub const CERTIFIED: u32 = 1 << 30;
+    /// One side is a free point, which can move many times its size in a step.
+    pub const HAS_FREE_POINT: u32 = 1 << 29;
+    /// It has a friction anchor.
+    pub const HAS_ANCHOR: u32 = 1 << 28;
+
+    /// A contact of a material, of which nothing is known.
+    #[inline(always)]
+    pub fn of_material(material: u32) -> Self {
+        debug_assert!(material < Self::HAS_ANCHOR, "16,384 cloths have as many pairs");
+        Self { word: material }
+    }
+
+    /// The index of the contact material.
+    #[inline(always)]
+    pub fn material(self) -> u32 {
+        self.word & (Self::HAS_ANCHOR - 1)
+    }
+
+    /// Whether a fact is known.
+    #[inline(always)]
+    pub fn is(self, fact: u32) -> bool {
+        self.word & fact != 0
+    }
+
+    /// The same with another fact, if it holds.
+    #[inline(always)]
+    pub fn with(self, fact: u32, holds: bool) -> Self {
+        Self { word: if holds { self.word | fact } else { self.word } }
+    }
 }
 
 /// Two elements that a search has found: they can touch within the candidate interval.
@@ -143,12 +178,14 @@ pub struct ClothContact<R, const N: usize, const M: usize> {
     /// the last one.
     pub(super) normal: [R; 3],
     /// Friction anchor: the slip of ours along theirs at the start of the candidate interval, in metres, that
-    /// friction is still to reverse. Valid only with `has_anchor`.
+    /// friction is still to reverse. Valid only with
+    /// [`ContactKind::HAS_ANCHOR`].
     pub(super) friction_anchor: [R; 3],
     pub(super) params: ContactParams<R>,
 }
 
-encode_struct!([R: Real] ContactParams<R> { thickness: R, material: u32, rest_limited: bool, certified: bool, has_free_point: bool, has_anchor: bool });
+encode_struct!([] ContactKind { word: u32 });
+encode_struct!([R: Real] ContactParams<R> { thickness: R, kind: ContactKind });
 
 impl<R: Real, const N: usize, const M: usize> Encode for ClothContact<R, N, M> {
     const SIZE: usize = <ElementPoints<N, M>>::SIZE + <[[R; 3]; 2]>::SIZE + ContactParams::<R>::SIZE;
@@ -195,24 +232,24 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// The contact material of the two cloths.
     #[inline(always)]
     pub(super) fn material<'a>(&self, step: &ClothStep<'a, R>) -> Option<&'a ContactMaterial<R>> {
-        step.materials.get(self.params.material as usize)?.as_ref()
+        step.materials.get(self.params.kind.material() as usize)?.as_ref()
     }
 
     /// Whether this pass resolves it.
     #[inline(always)]
     pub(super) fn is_resolved(&self, step: &ClothStep<'_, R>) -> bool {
-        step.mask.is_empty() || step.resolves(self.params.material)
+        step.mask.is_empty() || step.resolves(self.params.kind.material())
     }
 
     /// The cloths of its two sides, given the number of materials.
     pub fn cloths(&self, materials: usize) -> [usize; 2] {
-        let (material, cloths) = (self.params.material as usize, materials.isqrt());
+        let (material, cloths) = (self.params.kind.material() as usize, materials.isqrt());
         [material / cloths, material % cloths]
     }
 
     /// Marks the cloths of its two sides.
     pub(super) fn mark_cloths(&self, marks: &[AtomicBool]) {
-        let (material, cloths) = (self.params.material as usize, marks.len());
+        let (material, cloths) = (self.params.kind.material() as usize, marks.len());
         marks[material / cloths].store(true, Ordering::Relaxed);
         marks[material % cloths].store(true, Ordering::Relaxed);
     }
@@ -249,7 +286,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         if material_maps.thickness.is_empty() {
             return most;
         }
-        materials[self.params.material as usize].as_ref().map_or(most, there)
+        materials[self.params.kind.material() as usize].as_ref().map_or(most, there)
     }
 
     /// Whether the gap along the normal exceeds `least` metres and any rounding error, as far as a fast test can tell.
@@ -276,12 +313,22 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
 
     /// Whether the thickness is reduced, because the two are neighbours at rest.
     pub fn is_rest_limited(&self) -> bool {
-        self.params.rest_limited
+        self.params.kind.is(ContactKind::REST_LIMITED)
+    }
+
+    /// Whether one side is a free point.
+    pub(super) fn has_free_point(&self) -> bool {
+        self.params.kind.is(ContactKind::HAS_FREE_POINT)
+    }
+
+    /// Whether it has a friction anchor.
+    pub(super) fn has_anchor(&self) -> bool {
+        self.params.kind.is(ContactKind::HAS_ANCHOR)
     }
 
     /// Whether motion bounds certify it.
     pub fn is_certified(&self) -> bool {
-        self.params.certified
+        self.params.kind.is(ContactKind::CERTIFIED)
     }
 
     /// The contact with other rows of its points; `None` where one has no number.
@@ -294,7 +341,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
 
     /// Whether it refers to existing points and to an existing material.
     pub fn is_valid(&self, are_points: impl Fn(&[u32]) -> bool, materials: usize) -> bool {
-        are_points(&self.ours) && are_points(&self.theirs) && (self.params.material as usize) < materials
+        are_points(&self.ours) && are_points(&self.theirs) && (self.params.kind.material() as usize) < materials
     }
 
     /// The distance between the two, over their contact thickness.

@@ -290,20 +290,16 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::contact::cloth::contact::{Candidate, ContactParams};
+    use crate::contact::cloth::contact::{Candidate, ContactKind, ContactParams};
 
     /// Candidates of points of a cloth, and of free points where the first is odd.
     fn found(pairs: &[[u32; 2]], blocks: Blocks<'_>) -> FoundContacts<f32> {
         let mut found = FoundContacts::default();
         for &[ours, theirs] in pairs {
-            let params = ContactParams {
-                thickness: 1.0,
-                material: 0,
-                rest_limited: false,
-                certified: theirs % 3 == 0,
-                has_free_point: ours % 2 == 1,
-                has_anchor: false,
-            };
+            let kind = ContactKind::of_material(0)
+                .with(ContactKind::CERTIFIED, theirs % 3 == 0)
+                .with(ContactKind::HAS_FREE_POINT, ours % 2 == 1);
+            let params = ContactParams { thickness: 1.0, kind };
             found.point_point.candidates.push(Candidate {
                 points: ([ours], [theirs]),
                 normal: [0.0; 3],

@@ -21,7 +21,7 @@ pub struct ContactTask<R, const N: usize, const M: usize> {
 }
 
 /// Part of the contacts that stays spare when they grow: millions must not double.
-const SPARE: usize = 8;
+const SPARE: usize = 16;
 
 impl<R: Real, const N: usize, const M: usize> ContactTask<R, N, M> {
     /// No contacts yet.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::contact::cloth::contact::Candidate;
+use crate::contact::cloth::contact::{Candidate, ContactKind};
 use crate::contact::cloth::new_elements::NewElements;
 use crate::contact::cloth::swept_points::ElementPoints;
 use crate::contact::colouring::{permute, task_key};
@@ -100,7 +100,7 @@ impl<R: Copy, const N: usize, const M: usize> FoundPairs<R, N, M> {
             let mut blocks = [block[ours[0] as usize]; 4];
             let points = ours.iter().chain(theirs);
             blocks.iter_mut().zip(points).for_each(|(own, &point)| *own = block[point as usize]);
-            (params.has_free_point, task_key(blocks))
+            (params.kind.is(ContactKind::HAS_FREE_POINT), task_key(blocks))
         };
         order.clear();
         order.extend(candidates.iter().map(key).zip(0..));

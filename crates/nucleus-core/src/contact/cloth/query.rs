@@ -1,7 +1,7 @@
 //! Broad-phase query of one element group against others: tests rows of swept boxes, then creates contacts.
 
 use crate::contact::box_row::BoxRow;
-use crate::contact::cloth::contact::{Candidate, ContactParams};
+use crate::contact::cloth::contact::{Candidate, ContactKind, ContactParams};
 use crate::contact::cloth::element_bounds::ContactDistance;
 use crate::contact::cloth::elements::NewBounds;
 use crate::contact::cloth::found_contacts::{FoundContacts, FoundPairs};
@@ -217,14 +217,12 @@ impl<'a, R: Real> ClothPair<'a, R> {
             return None;
         }
         let is_free = |point: u32| elements.is_free_point[point as usize];
-        let params = ContactParams {
-            thickness: R::from_f64(f64::from(distance.thickness)),
-            material: ours * input.cloths.len() as u32 + theirs,
-            rest_limited: distance.rest_limited,
-            certified: distance.certified,
-            has_free_point: (N == 1 && is_free(points.0[0])) || (M == 1 && is_free(points.1[0])),
-            has_anchor: false,
-        };
+        let has_free_point = (N == 1 && is_free(points.0[0])) || (M == 1 && is_free(points.1[0]));
+        let kind = ContactKind::of_material(ours * input.cloths.len() as u32 + theirs)
+            .with(ContactKind::REST_LIMITED, distance.rest_limited)
+            .with(ContactKind::CERTIFIED, distance.certified)
+            .with(ContactKind::HAS_FREE_POINT, has_free_point);
+        let params = ContactParams { thickness: R::from_f64(f64::from(distance.thickness)), kind };
         Some(Candidate { points, normal: [R::ZERO; 3], params })
     }
 }

@@ -6,7 +6,7 @@
 
 use crate::contact::ccd::{first_contact_normal, passing_direction};
 use crate::contact::cloth::certify::{START_TOLERANCE, rounding_error};
-use crate::contact::cloth::contact::{ClothContact, ClothStep};
+use crate::contact::cloth::contact::{ClothContact, ClothStep, ContactKind};
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::{ElementPositions, gap_along, interpolate, shortest_line};
 use crate::contact::response::{Adhesion, Impact, Push, Restitution};
@@ -31,7 +31,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             return false;
         }
         let before = self.start_positions(step);
-        if self.params.has_free_point
+        if self.has_free_point()
             && let Some(normal) = first_contact_normal(&before, &now, self.rest_gap_at(step, &before))
         {
             self.normal = normal;
@@ -51,7 +51,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             self.push(step, &weights, &before, [rest_gap, rest_gap - distance]);
             return true;
         }
-        if self.params.has_free_point
+        if self.has_free_point()
             && let Some(normal) = passing_direction(&before, &now, self.rest_gap_at(step, &before))
         {
             self.normal = normal;
@@ -216,11 +216,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let start = self.positions(step.origins, |point| anchors.interval_start[point as usize].xyz());
         let in_interval = sub(line_before, self.contact_line(&start, weights));
         let is_valid =
-            self.params.has_anchor && !anchors.are_intersecting(self.params.material, step.materials.len());
+            self.has_anchor() && !anchors.are_intersecting(self.params.kind.material(), step.materials.len());
         let offset = if is_valid { add(self.friction_anchor, in_interval) } else { [R::ZERO; 3] };
         let offset = clamp_length(sub(offset, scale(self.normal, dot(offset, self.normal))), most);
         self.friction_anchor = sub(offset, in_interval);
-        self.params.has_anchor = true;
+        self.params.kind = self.params.kind.with(ContactKind::HAS_ANCHOR, true);
         offset
     }
 
@@ -232,7 +232,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         start: &[Row4<R>],
         interval_start: &[Row4<R>],
     ) {
-        if !self.params.has_anchor {
+        if !self.has_anchor() {
             return;
         }
         let now = self.positions(origins, |point| start[point as usize].xyz());
