@@ -266,7 +266,9 @@ const fn stored<const N: usize>() -> [usize; 4] {
 /// The weights of hinges side by side.
 #[inline(always)]
 pub fn weights<R: Real, L: Lanes<R>, const N: usize>(groups: &[HingeGroup<R, N>]) -> [L; N] {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| L::of_groups(|group| groups[group].weights[k]));
+    // Not an array's `map`: it is not inlined.
+    let of = |k: usize| L::of_groups(|group| groups[group].weights[k]);
+    let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
     // As the rounded weights of the row were made: their sum is zero.
     let last = L::splat(R::ZERO) - a - b - c - c - d;
     let all = if N == 6 { [a, b, c, c, d, last] } else { [a, b, c, d, d, d] };
