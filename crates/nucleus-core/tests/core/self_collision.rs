@@ -121,3 +121,36 @@ fn a_flat_sheet_without_gravity_has_no_contact_and_does_not_move() {
     assert_eq!(report.contacts, 0, "{report:?}");
     assert_eq!(positions(&solver, 0, 17 * 17), start);
 }
+
+// What the first time step would carry through another cloth does not intersect it: it is stopped, not untangled.
+#[test]
+fn a_sheet_that_flies_at_another_from_the_first_step_on_never_passes_it() {
+    let level = |size: f64, n: u32, height: f64| {
+        let mut sheet = grid(n, n, Vec3::x() * size, Vec3::z() * size);
+        sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-size / 2.0, height, -size / 2.0));
+        sheet
+    };
+    let sheets = [level(0.93, 11, 0.0), level(1.37, 9, 0.15)];
+    let mut builder = ModelBuilder::new();
+    for sheet in &sheets {
+        builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(0.05), LISTS)).expect("a mesh");
+    }
+    let still = ClothFrame { thickness: 0.002, self_collision: full_surface(0.002), ..still() };
+    // Its corners, a quarter of the mass of other points, would go 26 cm in the first step.
+    let flying = ClothFrame { local_force: Vec3::y() * 2.0, ..still };
+    let input =
+        FrameInput { gravity: Vec3::zeros(), cloths: vec![flying, still], ..frame(3, physical(12.0)) };
+    let mut solver = Solver::<f32>::new(builder, 1);
+    for step in 0..3 {
+        let report = solver.step(&input, &mut ());
+        let places = [positions(&solver, 0, 121), positions(&solver, 1, 81)];
+        let [lower, upper] = places;
+        let through = crossings(&[(&sheets[0], lower), (&sheets[1], upper)]);
+        assert_eq!(
+            (through, report.pairs_unresolved, report.intersections),
+            (0, 0, 0),
+            "frame {step}: {report:?}"
+        );
+        assert!(report.contacts > 0, "frame {step}: {report:?}");
+    }
+}

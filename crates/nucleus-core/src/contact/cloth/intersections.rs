@@ -9,7 +9,8 @@ use crate::contact::pair_filter::PairFilter;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub};
 use crate::model::ClothModel;
 
-/// Finds all intersections at the present positions. Valid while the boxes of the last search are.
+/// Finds all intersections at the start of the time step: the end is not certified yet, and what would pass on the way there
+/// is not to be untangled but stopped. Valid while the boxes of the last search are.
 pub fn find_intersections<R: Real>(
     elements: &ElementGroups,
     materials: &[Option<ContactMaterial<R>>],
@@ -18,7 +19,7 @@ pub fn find_intersections<R: Real>(
 ) {
     untangling.is_search_due.fill(false);
     untangling.intersections.clear();
-    let SearchInput { cloths, anchors, displacement: [_, displacement], strength, filter, .. } = *input;
+    let SearchInput { cloths, anchors, displacement: [displacement, _], strength, filter, .. } = *input;
     let search = IntersectionSearch { elements, materials, cloths, anchors, displacement, strength, filter };
     for group in 0..elements.groups.len() as u32 {
         elements.query(&elements.swept_bound(group), |other| {
