@@ -255,6 +255,27 @@ impl<R: Real> GroundContact<'_, R> {
         gap < self.thickness(point) * R::from_f64(1.0 - TOUCHING) && row.0[3] > R::ZERO
     }
 
+    /// Whether a point went through the plane: it began the step above and is below now. A contact that is carried out in
+    /// part lets it.
+    #[inline(always)]
+    pub fn has_passed(&self, point: u32) -> bool {
+        let row = self.writer.row(point);
+        self.plane.height_now(point, row.xyz()) < R::ZERO
+            && row.0[3] > R::ZERO
+            && self.plane.height(0, point, self.start[self.writer.place_of(point)].xyz()) >= R::ZERO
+            && !self.material.is_partial(self.material_maps)
+    }
+
+    /// Returns a point to its height above the plane at the start of the step.
+    pub fn revert(&self, point: u32) {
+        let mut row = self.writer.row(point);
+        let start = self.start[self.writer.place_of(point)].xyz();
+        let heights = [self.plane.height(0, point, start), self.plane.height_now(point, start)];
+        let [x, y, z] = add(start, scale(self.plane.normal(), heights[0] - heights[1]));
+        row.0[..3].copy_from_slice(&[x, y, z]);
+        self.writer.place(point, row);
+    }
+
     /// Applies adhesion between the points of a range and the plane.
     pub fn adhere(&self, points: Range<u32>) {
         let rows = points.map(|point| (self.writer.row(point), point));

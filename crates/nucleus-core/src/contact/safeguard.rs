@@ -4,8 +4,8 @@
 //! 1. Contacts push again, four times.
 //! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little room for
 //!    all of it.
-//! 3. Motion is truncated at a division plane between the two elements, or, at a collider, reverted to the start
-//!    of the step in the collider's moving frame (planar divide and truncate).
+//! 3. Motion is truncated at a division plane between the two elements, or, at a collider or the ground, reverted to the
+//!    start of the step in its moving frame (planar divide and truncate).
 //! 4. The points of the pair freeze: they keep the positions of the start of the step, or move with a frozen
 //!    neighbour or collider.
 //! 5. The pair is accepted as unresolved, and counted.
@@ -22,8 +22,8 @@ use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::pass::resolve_cloth_contacts;
 use crate::contact::collider::free_points::settle_free_points;
 use crate::contact::collider::pass::{
-    accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
-    revert_collider_contacts,
+    accept_unresolved_collider_contacts, certify_collider_contacts, certify_ground_contacts,
+    resolve_collider_contacts, revert_collider_contacts,
 };
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::math::Real;
@@ -56,6 +56,7 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
             let is_left = pass.contact.has_unproven[1].iter_mut().any(|mark| *mark.get_mut());
             sides = if is_left { sides } else { 0 };
         }
+        sides += certify_ground_contacts(pass);
         let unproven = [cloths, sides];
         let is_last = attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS;
         if unproven == [0, 0] || is_last {

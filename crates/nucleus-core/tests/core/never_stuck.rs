@@ -1,6 +1,8 @@
 //! Infeasible contact neither locks nor explodes, and recovers once it is feasible.
 
-use crate::scenes::{INSCRIBED, LINKS, Vec3, cuboid, frame, grid, one_cloth, physical, pins, sphere, still};
+use crate::scenes::{
+    INSCRIBED, LINKS, Vec3, cuboid, frame, grid, ground, one_cloth, physical, pins, sphere, still,
+};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput, Mass,
     ModelBuilder, Pin, PointId, ResistanceModel, Solver, StateView, StepReport, Surface,
@@ -213,4 +215,46 @@ fn a_pair_that_pins_carry_through_each_other_is_one_unresolved_pair() {
 fn an_inseparable_pair_is_counted_once_per_step_whatever_the_number_of_passes() {
     let report = carried_through_a_triangle(0.0, false);
     assert_eq!((report.pairs_unresolved, report.pairs_reverted), (1, 0), "{report:?}");
+}
+
+// The ground is certified as colliders are: cloth that has no room above it is unresolved, and does not slip below unseen.
+#[test]
+fn cloth_that_a_plate_presses_through_the_ground_is_counted_as_unresolved() {
+    let mut sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);
+    sheet.positions.iter_mut().for_each(|p| p.y = 0.01);
+    let mut builder = one_cloth(sheet, LINKS);
+    let plate = |height: f64| {
+        let mut plate = grid(2, 2, Vec3::x() * 0.2, Vec3::z() * 0.2);
+        plate.positions.iter_mut().for_each(|p| *p += Vec3::new(0.1, height, 0.1));
+        plate
+    };
+    builder.collider(Collider { surface: plate(0.2) }).expect("a good mesh");
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let height = |frame: u32| 0.2 - f64::from(frame) * 0.03;
+    let mut unresolved = 0;
+    for frame in 0..10 {
+        let [start, end] = [frame, frame + 1].map(|frame| plate(height(frame)).positions);
+        let collider =
+            ColliderFrame { start, end, collide: true, thickness: 0.002, ..ColliderFrame::default() };
+        let cloth = ClothFrame { thickness: 0.002, friction: 0.25, ..still() };
+        let input = FrameInput {
+            plane: Some(ground(0.5)),
+            colliders: vec![collider],
+            cloths: vec![cloth],
+            ..crate::scenes::frame(3, physical(24.0))
+        };
+        let report = solver.step(&input, &mut ());
+        unresolved += report.pairs_unresolved;
+        let lowest = (0..81).map(|k| solver.point(ClothId(0), k).y).fold(f64::MAX, f64::min);
+        assert!(report.finite);
+        if height(frame + 1) > 0.006 {
+            assert!(
+                lowest > 0.0019,
+                "frame {frame}: there is room, and the cloth is at {lowest}: {report:?}"
+            );
+            assert_eq!(unresolved, 0, "frame {frame}: {report:?}");
+        }
+        assert!(lowest >= 0.0 || unresolved > 0, "frame {frame}: {lowest} and unseen: {report:?}");
+    }
+    assert!(unresolved > 0, "there was no room");
 }

@@ -341,7 +341,9 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
 
     /// Whether it refers to existing points and to an existing material.
     pub fn is_valid(&self, are_points: impl Fn(&[u32]) -> bool, materials: usize) -> bool {
-        are_points(&self.ours) && are_points(&self.theirs) && (self.params.kind.material() as usize) < materials
+        are_points(&self.ours)
+            && are_points(&self.theirs)
+            && (self.params.kind.material() as usize) < materials
     }
 
     /// The distance between the two, over their contact thickness.

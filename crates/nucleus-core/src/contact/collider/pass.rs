@@ -1,9 +1,10 @@
 //! The passes of a time step over contacts with colliders and the ground plane.
 
 use std::ops::Range;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::contact::collider::broad_phase::update_collider_candidates;
+use crate::contact::collider::contact::Outcome;
 use crate::contact::collider::contacts::{ColliderContacts, certify, for_unproven_points, revert_to_start};
 use crate::contact::collider::start_gaps::release_cleared_points;
 use crate::contact::collider::sweep::{adhere, resolve};
@@ -83,12 +84,39 @@ pub fn certify_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> [u64
     counts
 }
 
+/// The number of points that went through the ground plane in this time step. Marks their cloths.
+pub fn certify_ground_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> u64 {
+    let marks = std::mem::take(&mut pass.contact.has_unproven[1]);
+    let (model, all) = (pass.model, AtomicU64::new(0));
+    for_ground_contacts(pass, 1.0, |cloth, ground, pool, _| {
+        let blocks = &model.cloths[cloth].blocks;
+        pool.parallel_for(blocks.len(), |block| {
+            let passed = blocks.range(block).filter(|&point| ground.has_passed(point)).count() as u64;
+            if passed > 0 {
+                marks[cloth].store(true, Ordering::Relaxed);
+                all.fetch_add(passed, Ordering::Relaxed);
+            }
+        });
+    });
+    pass.contact.has_unproven[1] = marks;
+    all.into_inner()
+}
+
 /// Reverts contacts without certificate to the start of the time step, and freezes their points.
 pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
     let cloth_contacts = pass.contact.cloth_contacts.as_mut();
     let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
     let mut freeze =
         |point: u32| frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = true);
+    let (model, mut passed) = (pass.model, Vec::new());
+    for_ground_contacts(pass, 1.0, |cloth, ground, _, counters| {
+        for point in model.cloths[cloth].points().filter(|&point| ground.has_passed(point)) {
+            ground.revert(point);
+            passed.push(point);
+            Outcome::Reverted.count(counters);
+        }
+    });
+    passed.into_iter().for_each(&mut freeze);
     for_all_contacts(pass, |list, step, pool, counters| {
         revert_to_start(list, step, pool, counters, &mut freeze)
     });
@@ -181,7 +209,7 @@ fn push<R: Real>(ground: &GroundContact<'_, R>, points: Range<u32>, counters: &C
 fn for_ground_contacts<R: Real>(
     pass: &mut ContactPass<'_, R>,
     thickness_scale: f64,
-    work: impl Fn(usize, &GroundContact<'_, R>, &ThreadPool, &ContactCounters),
+    mut work: impl FnMut(usize, &GroundContact<'_, R>, &ThreadPool, &ContactCounters),
 ) {
     let ContactPass { state, pool, contact, counters, .. } = pass;
     let ContactSystem { ground, ground_materials, material_maps, has_touched, .. } = &**contact;
