@@ -6,8 +6,8 @@
 //!    all of it.
 //! 3. Motion is truncated at a division plane between the two elements, or, at a collider or the ground, reverted to the
 //!    start of the step in its moving frame (planar divide and truncate).
-//! 4. The points of the pair freeze: they keep the positions of the start of the step, or move with a frozen
-//!    neighbour or collider.
+//! 4. The points of the pair freeze: they keep the positions of the start of the step, or move with a collider, a pin
+//!    or a point that these carry.
 //! 5. The pair is accepted as unresolved, and counted.
 //!
 //! Only islands of cloths with a failed certificate push again; of free points that touch no cloth, only those that failed.
@@ -18,6 +18,7 @@
 use std::sync::atomic::Ordering;
 
 use crate::contact::cloth::broad_phase::update_cloth_candidates;
+use crate::contact::cloth::certify::Frozen;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::pass::resolve_cloth_contacts;
 use crate::contact::collider::free_points::settle_free_points;
@@ -26,7 +27,7 @@ use crate::contact::collider::pass::{
     resolve_collider_contacts, revert_collider_contacts,
 };
 use crate::contact::system::{ContactPass, ContactSystem};
-use crate::math::Real;
+use crate::math::{Real, Row4};
 use crate::output::{Stage, StepObserver};
 use crate::state::State;
 
@@ -134,11 +135,13 @@ fn freeze<R: Real>(pass: &mut ContactPass<'_, R>) {
     }
 }
 
-/// Only pinned points start out frozen.
+/// Only pinned points start out frozen: they are carried.
 fn clear_frozen<R: Real>(state: &State<R>, contact: &mut ContactSystem<R>) {
     let Some(ClothContacts { frozen, .. }) = &mut contact.cloth_contacts else { return };
     frozen.clear();
-    frozen.extend(state.displacement.iter().map(|row| row.0[3] <= R::ZERO));
+    let is_pinned = |row: &Row4<R>| row.0[3] <= R::ZERO;
+    let frozen_as = |row| if is_pinned(row) { Frozen::Carried } else { Frozen::Free };
+    frozen.extend(state.displacement.iter().map(frozen_as));
 }
 
 /// Accepts pairs that no fallback resolves. Their contacts are searched anew.

@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use crate::bytes::checkpoint_struct;
+use crate::contact::cloth::certify::Frozen;
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::contact_list::{Blocks, ContactList, Replaced};
 use crate::contact::cloth::found_contacts::FoundContacts;
@@ -165,7 +166,7 @@ impl<R: Real> ContactCache<R> {
     }
 
     /// Freezes the points of every contact without certificate, one after the other. Returns their number.
-    pub fn freeze(&mut self, step: &ClothStep<'_, R>, frozen: &mut [bool]) -> u64 {
+    pub fn freeze(&mut self, step: &ClothStep<'_, R>, frozen: &mut [Frozen]) -> u64 {
         let frozen = std::cell::RefCell::new(frozen);
         self.correct_unproven(
             step,

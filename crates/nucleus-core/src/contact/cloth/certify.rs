@@ -16,6 +16,19 @@ pub(super) const START_TOLERANCE: f64 = 0.25;
 /// Smallest share of a gap on either side of a division plane.
 const MIN_PLANE_SHARE: f64 = 0.05;
 
+/// How the safeguard holds a point in a time step. Who is carried carries others on, and is not returned to the start: where
+/// both happened in turn, cloth between a moving collider and other cloth would not be separated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Frozen {
+    /// Not at all.
+    #[default]
+    Free,
+    /// At the start of the step.
+    AtStart,
+    /// With a collider, a pin or a point that these carry.
+    Carried,
+}
+
 impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// Certifies that the two did not pass through each other in this step; may set another normal that proves
     /// it. A pair that was not separated at the start of the step is accepted.
@@ -116,12 +129,13 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         step.writer.place(point, row);
     }
 
-    /// Returns all points of the two to the start of the step, or moves all with one that is `frozen`: points
-    /// with a common motion pass no part of themselves.
-    pub fn freeze(&mut self, step: &ClothStep<'_, R>, frozen: &mut [bool]) {
+    /// Returns all points of the two to the start of the step, or moves all with one that is carried: points with a common
+    /// motion pass no part of themselves.
+    pub fn freeze(&mut self, step: &ClothStep<'_, R>, frozen: &mut [Frozen]) {
         let points = || self.ours.iter().chain(&self.theirs).copied();
-        let carrier = points().find(|&point| frozen[point as usize]);
+        let carrier = points().find(|&point| frozen[point as usize] == Frozen::Carried);
         let motion = carrier.map_or([R::ZERO; 3], |point| sub(step.row(point).xyz(), step.start(point)));
+        let state = if carrier.is_some() { Frozen::Carried } else { Frozen::AtStart };
         for point in points() {
             let mut row = step.row(point);
             if row.0[3] > R::ZERO {
@@ -129,7 +143,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
                 row = Row4([x, y, z, row.0[3]]);
                 step.writer.place(point, row);
             }
-            frozen[point as usize] = true;
+            frozen[point as usize] = state;
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::cloth::cache::ContactCache;
+use crate::contact::cloth::certify::Frozen;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
 use crate::contact::cloth::found_contacts::FoundContacts;
@@ -39,7 +40,7 @@ pub struct ClothContacts<R> {
     /// Buffers of the search.
     pub buffers: SearchBuffers<R>,
     /// Points that the safeguard has frozen in this step.
-    pub frozen: Vec<bool>,
+    pub frozen: Vec<Frozen>,
     /// Intersections, and their corrections.
     pub untangling: Untangling,
 }

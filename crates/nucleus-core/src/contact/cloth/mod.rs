@@ -19,7 +19,7 @@
 
 pub mod broad_phase;
 pub mod cache;
-mod certify;
+pub mod certify;
 pub mod contact;
 pub mod contact_list;
 pub mod contact_task;

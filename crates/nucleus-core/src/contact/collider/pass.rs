@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::contact::cloth::certify::Frozen;
 use crate::contact::collider::broad_phase::update_collider_candidates;
 use crate::contact::collider::contact::Outcome;
 use crate::contact::collider::contacts::{ColliderContacts, certify, for_unproven_points, revert_to_start};
@@ -107,7 +108,7 @@ pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
     let cloth_contacts = pass.contact.cloth_contacts.as_mut();
     let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
     let mut freeze =
-        |point: u32| frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = true);
+        |point: u32| frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = Frozen::Carried);
     let (model, mut passed) = (pass.model, Vec::new());
     for_ground_contacts(pass, 1.0, |cloth, ground, _, counters| {
         for point in model.cloths[cloth].points().filter(|&point| ground.has_passed(point)) {
