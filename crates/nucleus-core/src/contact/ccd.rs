@@ -13,6 +13,8 @@ use crate::contact::narrow_phase::{
 };
 use crate::math::{Real, add, dot, scale, sub, unit};
 
+/// Share of the thickness above which a gap over motion bounds is a certificate: far above rounding error.
+pub const CERTIFIED_GAP: f64 = 0.02;
 /// Bisections of the motion, at most.
 const MAX_SUBDIVISIONS: u32 = 6;
 

@@ -13,14 +13,13 @@ use crate::contact::bvh::Aabb;
 use crate::contact::collider::ColliderState;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::closest_on_triangle;
+use crate::contact::response::DEPENETRATION_SPEED;
 use crate::contact::time_step::ColliderStep;
 use crate::math::Real;
 use crate::model::ColliderModel;
 
 type Point = Vector3<f64>;
 
-/// Speed in m/s at which a point moves out.
-const DEPENETRATION_SPEED: f64 = 1.0;
 /// Length of the inside-test ray, in metres.
 const RAY_LENGTH: f64 = 1e7;
 

@@ -73,10 +73,10 @@
 //! | `collider::motion_bounds::TRAVEL_MARGIN` | 0.25 | of the predicted motion, for points that change course |
 //! | `collider::query::GROUP_SIZE` | 2 triangles | fastest on a drape: 55 ms a frame, 67 with eight |
 //! | `collider::contact::PLANE_VALIDITY` | 1/256 of the rest gap | error of a plane around an edge below 1e-5 of it |
-//! | `collider::active_set::CERTIFIED_GAP` and `cloth::element_bounds::CERTIFIED_GAP` | 0.02 t | far above rounding error |
+//! | `ccd::CERTIFIED_GAP` | 0.02 t | far above rounding error |
 //! | `collider::sweep::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
 //! | `collider::response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |
-//! | `TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |
+//! | `response::TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |
 //! | `cloth::broad_phase::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
 //! | `cloth::broad_phase::BOUND_RADIUS` | 0.4 t or 0.08 e | smaller: more searches; larger: more contacts |
 //! | `cloth::motion_bounds::KEEP_SHARE` | 0.8 | of the radius, within which a bound is kept without search |

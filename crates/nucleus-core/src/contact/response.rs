@@ -10,6 +10,9 @@ use crate::math::{Real, add, dot, max, scale, sub};
 
 /// Speed in m/s at which contact resolves a depth that existed before the step.
 pub(super) const DEPENETRATION_SPEED: f64 = 1.0;
+/// Share of the thickness that counts as touching: without a tolerance a contact at rest would push for ever at
+/// its last bit.
+pub(super) const TOUCH_TOLERANCE: f64 = 1e-6;
 
 /// A push along the contact normal, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]

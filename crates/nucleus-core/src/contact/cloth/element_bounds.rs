@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use crate::contact::bvh::{Aabb, SweptBox};
+use crate::contact::ccd::CERTIFIED_GAP;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::swept_points::{ElementPoints, ROUNDING, SweptPoints};
 use crate::contact::narrow_phase::{ElementPositions, between_centroids, gap_along, shortest_line};
@@ -32,10 +33,6 @@ pub struct ContactDistance {
     /// Whether motion bounds certify a gap for the whole candidate interval.
     pub certified: bool,
 }
-
-/// Share of the thickness above which a gap over the whole candidate interval is a certificate: far above
-/// rounding error.
-const CERTIFIED_GAP: f32 = 0.02;
 
 impl ElementBounds {
     /// Sets the origin of all swept positions. All points are to be updated after it.
@@ -113,7 +110,7 @@ impl ContactDistance {
             return None;
         }
         let contact_distance = thickness.min(at_rest * REST_GAP_SHARE);
-        let certified = least > contact_distance * CERTIFIED_GAP;
+        let certified = least > contact_distance * CERTIFIED_GAP as f32;
         (least < contact_distance * range).then_some(Self {
             thickness: contact_distance,
             rest_limited: contact_distance < thickness,

@@ -9,13 +9,9 @@ use crate::contact::cloth::certify::{START_TOLERANCE, rounding_error};
 use crate::contact::cloth::contact::{ClothContact, ClothStep, ContactKind};
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::{ElementPositions, gap_along, interpolate, shortest_line};
-use crate::contact::response::{Adhesion, Impact, Push, Restitution};
+use crate::contact::response::{Adhesion, Impact, Push, Restitution, TOUCH_TOLERANCE};
 use crate::math::{Real, Row4, add, clamp_length, dot, max, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
-
-/// Share of the thickness that counts as touching: without a tolerance a contact at rest would push for ever at
-/// its last bit.
-const TOUCH_TOLERANCE: f64 = 1e-6;
 
 impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// Pushes the two apart if they are nearer than their thickness. Returns whether they were.

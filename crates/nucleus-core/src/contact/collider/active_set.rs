@@ -246,8 +246,6 @@ fn is_within(key: [u32; 2]) -> bool {
 
 /// Share of the interaction range by which the gap of an idle contact must exceed it.
 const IDLE_MARGIN: f64 = 1e-3;
-/// Share of the thickness above which a gap over the whole window is a certificate: far above rounding error.
-pub(super) const CERTIFIED_GAP: f64 = 0.02;
 
 /// How contacts are selected for the active set.
 pub(super) struct Selection<'a, R> {

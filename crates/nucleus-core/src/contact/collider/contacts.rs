@@ -3,8 +3,9 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use crate::contact::ccd::CERTIFIED_GAP;
 use crate::contact::collider::Boxes;
-use crate::contact::collider::active_set::{ActiveSet, CERTIFIED_GAP, Selection};
+use crate::contact::collider::active_set::{ActiveSet, Selection};
 use crate::contact::collider::candidates::OverlappingPair;
 use crate::contact::collider::contact::{Certificate, ColliderContact, Outcome};
 use crate::contact::collider::motion_bounds::MotionBounds;

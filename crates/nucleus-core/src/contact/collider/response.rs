@@ -6,13 +6,10 @@ use crate::contact::collider::contact::{
 use crate::contact::collider::separation::{best_plane, separated};
 use crate::contact::material::{ContactMaterial, ContactPoints};
 use crate::contact::response::Restitution;
-use crate::contact::response::{Adhesion, Push, coulomb_correction};
+use crate::contact::response::{Adhesion, Push, TOUCH_TOLERANCE, coulomb_correction};
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Real, add, dot, scale};
 
-/// Share of the thickness that counts as touching: without a tolerance a contact at rest would push for ever at
-/// its last bit.
-const TOUCH_TOLERANCE: f64 = 1e-6;
 /// Smallest mobility of an element, relative to that of its most mobile point: no point moves farther than 1 /
 /// this times the depth of a contact.
 const MIN_MOBILITY: f64 = 0.25;
