@@ -152,12 +152,13 @@ impl<R: Real> ContactCache<R> {
         self.edge_edge.certify(step, unproven, pool) + self.point_face.certify(step, unproven, pool)
     }
 
-    /// The pairs of cloths in contact, each as often as they have contacts.
+    /// The pairs of cloths in contact, each at least once.
     pub fn cloth_pairs(&self, materials: usize) -> impl Iterator<Item = [usize; 2]> {
-        let pairs = self.point_face.iter().map(move |contact| contact.cloths(materials));
-        let pairs = pairs.chain(self.edge_edge.iter().map(move |contact| contact.cloths(materials)));
-        let pairs = pairs.chain(self.point_edge.iter().map(move |contact| contact.cloths(materials)));
-        pairs.chain(self.point_point.iter().map(move |contact| contact.cloths(materials)))
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        let pairs = point_face.of_each_task().map(move |contact| contact.cloths(materials));
+        let pairs = pairs.chain(edge_edge.of_each_task().map(move |contact| contact.cloths(materials)));
+        let pairs = pairs.chain(point_edge.of_each_task().map(move |contact| contact.cloths(materials)));
+        pairs.chain(point_point.of_each_task().map(move |contact| contact.cloths(materials)))
     }
 
     /// Truncates the motion of every contact without certificate, one after the other. Returns their number.

@@ -9,7 +9,7 @@ use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::contact_task::ContactTask;
 use crate::contact::cloth::found_contacts::{FoundContacts, FoundPairs};
-use crate::contact::colouring::Colouring;
+use crate::contact::colouring::{Colouring, SERIAL};
 use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
@@ -90,7 +90,17 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
             .flat_map(ContactTask::contacts)
     }
 
-    /// The same, to work on.
+    /// One contact of each task, and all between more than two blocks. A block is of one cloth, so these are of all pairs of
+    /// cloths in contact.
+    pub fn of_each_task(&self) -> impl Iterator<Item = &ClothContact<R, N, M>> {
+        let tasks = [&self.free_points, &self.cloth].into_iter().flat_map(|all| &all.tasks);
+        tasks.flat_map(|task| match (task.blocks, task.contacts()) {
+            (SERIAL, all) => all,
+            (_, all) => &all[..all.len().min(1)],
+        })
+    }
+
+    /// The same as [`iter`](Self::iter), to work on.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut ClothContact<R, N, M>> {
         let both = [&mut self.free_points, &mut self.cloth];
         both.into_iter().flat_map(|all| &mut all.tasks).flat_map(ContactTask::contacts_mut)
@@ -334,6 +344,10 @@ mod tests {
                 list
             });
             prop_assert_eq!(points_of(&whole), points_of(&cut));
+            let blocks_of = |contacts: Vec<&ClothContact<f32, 1, 1>>| -> std::collections::BTreeSet<[u32; 2]> {
+                contacts.into_iter().map(|contact| contact.blocks(&block)).collect()
+            };
+            prop_assert_eq!(blocks_of(whole.of_each_task().collect()), blocks_of(whole.iter().collect()));
 
             // Contacts of cloth keep the order in which they were found, those of free points have that of their points.
             for tasks in [&whole.cloth.tasks, &whole.free_points.tasks] {
