@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 
 use crate::input::frame::Bending;
 use crate::math::kernel::Kernel;
-use crate::math::{Lanes, Real, Row4, triple};
+use crate::math::{Lanes, Real, Row4};
 use crate::model::rows::Row;
 use crate::model::surface::Surface;
 use crate::parallel::disjoint::DisjointSlice;
@@ -187,26 +187,25 @@ fn measure<R: Real, L: Lanes<R>, const N: usize>(
 ) -> Measured<L> {
     let splat = |value: f64| L::splat(R::from_f64(value));
     let (zero, one, tiny) = (splat(0.0), splat(1.0), L::splat(R::MIN_DENOMINATOR));
-    let mut c = triple(|axis| L::of_groups(|k| hinges[k].anchored[axis]));
+    let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|k| hinges[k].anchored[axis]));
     for (weight, x) in weights::<R, L, N>(hinges).into_iter().zip(x) {
         (0..3).for_each(|axis| c[axis] = c[axis] + weight * x[axis]);
     }
     let [edge, left, right] = spans_of(angles, x);
-    let unit = |normal: [L; 3]| {
+    let normals = [cross(edge, left), cross(right, edge)].map(|normal| {
         let length = dot(normal, normal).sqrt() + tiny;
-        triple(|axis| normal[axis] / length)
-    };
-    let normals = [unit(cross(edge, left)), unit(cross(right, edge))];
-    let n = triple(|axis| normals[0][axis] + normals[1][axis]);
+        normal.map(|x| x / length)
+    });
+    let n: [L; 3] = std::array::from_fn(|axis| normals[0][axis] + normals[1][axis]);
     let length = dot(c, c).sqrt();
     let sign = dot(c, n).choose_by_sign(one, zero - one);
     let fold = L::of_groups(|k| hinges[k].inverse_square_max);
     // The twist of a quad has no fold: its chord is measured by its own rest.
     let longest = (fold - tiny).choose_by_sign(one / (fold.most(tiny)).sqrt(), length + tiny);
     let flat = longest * splat(NEAR_FLAT);
-    let m = triple(|axis| c[axis] * sign + n[axis] * flat);
+    let m: [L; 3] = std::array::from_fn(|axis| c[axis] * sign + n[axis] * flat);
     let size = dot(m, m).sqrt() + tiny;
-    let direction = triple(|axis| m[axis] / size);
+    let direction = m.map(|x| x / size);
     let flipped = L::of_groups(|k| angles[k].flipped);
     let past = flipped * flipped;
     let chord = (one - past) * (sign * length) + flipped * (longest + longest - length);
@@ -281,9 +280,9 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for AngleSweep<'_, R,
             let cosine = (cosine - least).choose_by_sign(cosine, least);
             let (share, compliance) = map.scale(at, error, share * grown, compliance / (grown + tiny));
             let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
-            let push = triple(|axis| direction[axis] * lambda);
+            let push = direction.map(|x| x * lambda);
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
-                let [mx, my, mz] = triple(|axis| weights[k] * push[axis]);
+                let [mx, my, mz] = push.map(|push| weights[k] * push);
                 // SAFETY: the caller's promise.
                 unsafe {
                     let moved = [px - w * mx, py - w * my, pz - w * mz, w];

@@ -7,7 +7,7 @@
 //! the angle.
 
 use crate::math::kernel::{self, Kernel};
-use crate::math::{Lanes, Real, Row4, triple};
+use crate::math::{Lanes, Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::hinge::{HingeGroup, MIN_COSINE, RestGroup, weights};
@@ -67,7 +67,7 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R,
             // SAFETY: the caller's promise.
             let x: [[L; 4]; N] =
                 std::array::from_fn(|k| unsafe { load(points, |group| groups[group].points[k]) });
-            let mut c = triple(|axis| L::of_groups(|group| groups[group].anchored[axis]));
+            let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|group| groups[group].anchored[axis]));
             let mut mobility = zero;
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
                 let weight = weights[k];
@@ -87,7 +87,7 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R,
             let lambda = share * bent / (mobility + compliance * cosine.sqrt() + tiny);
             let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
-                let [mx, my, mz] = triple(|axis| weights[k] * push[axis]);
+                let [mx, my, mz] = push.map(|push| weights[k] * push);
                 // SAFETY: the caller's promise.
                 unsafe {
                     let moved = [px - w * mx, py - w * my, pz - w * mz, w];

@@ -23,8 +23,7 @@ pub unsafe fn load<R: Real, L: Lanes<R>>(
     group: impl Fn(usize) -> [u32; 4],
 ) -> [L; 4] {
     // SAFETY: the caller's promise.
-    let rows = |lane: usize| L::of_groups(|k| unsafe { points.get(group(k)[lane]) }.0);
-    L::transpose([rows(0), rows(1), rows(2), rows(3)])
+    L::transpose([0, 1, 2, 3].map(|lane: usize| L::of_groups(|k| unsafe { points.get(group(k)[lane]) }.0)))
 }
 
 /// Writes the columns x, y, z and inverse mass of the points that `group` gives for every group.

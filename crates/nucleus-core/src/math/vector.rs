@@ -43,12 +43,6 @@ impl<R: Real> Encode for Row4<R> {
     }
 }
 
-/// What `of` gives for 0, 1 and 2. Inlined, which an array's `map` is not always: lanes then stay in registers.
-#[inline(always)]
-pub fn triple<T>(of: impl Fn(usize) -> T) -> [T; 3] {
-    [of(0), of(1), of(2)]
-}
-
 /// The dot product of two triples of numbers or lanes, summed left to right.
 #[inline(always)]
 pub fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: [T; 3], b: [T; 3]) -> T {

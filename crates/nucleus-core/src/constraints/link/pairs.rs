@@ -171,8 +171,7 @@ impl<R: Real> Kernel<R> for PairSweep<'_, R> {
         for at in group_starts::<R, L>(all.len(), false) {
             let groups = &all[at..at + L::GROUPS];
             // SAFETY: the caller's promise.
-            let ends =
-                unsafe { [load(points, |k| groups[k].row.ends[0]), load(points, |k| groups[k].row.ends[1])] };
+            let ends = unsafe { [0, 1].map(|end| load(points, |k| groups[k].row.ends[end])) };
             let correction = projection.correction(|k| &groups[k].row, (all, at), ends);
             if let Some(loads) = &mut loads {
                 let loads = &mut loads[at..at + L::GROUPS];
