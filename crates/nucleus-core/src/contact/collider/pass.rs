@@ -103,21 +103,21 @@ pub fn certify_ground_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> u64 {
     all.into_inner()
 }
 
-/// Reverts contacts without certificate to the start of the time step, and freezes their points.
+/// Reverts contacts without certificate, with the ground and with colliders, to the start of the time step, and freezes
+/// their points.
 pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
     let cloth_contacts = pass.contact.cloth_contacts.as_mut();
     let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
     let mut freeze =
         |point: u32| frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = Frozen::Carried);
-    let (model, mut passed) = (pass.model, Vec::new());
+    let model = pass.model;
     for_ground_contacts(pass, 1.0, |cloth, ground, _, counters| {
         for point in model.cloths[cloth].points().filter(|&point| ground.has_passed(point)) {
             ground.revert(point);
-            passed.push(point);
+            freeze(point);
             Outcome::Reverted.count(counters);
         }
     });
-    passed.into_iter().for_each(&mut freeze);
     for_all_contacts(pass, |list, step, pool, counters| {
         revert_to_start(list, step, pool, counters, &mut freeze)
     });
