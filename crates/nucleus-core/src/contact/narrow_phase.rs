@@ -125,7 +125,7 @@ pub fn closest_on_triangle<R: Real>(p: [R; 3], [a, b, c]: [[R; 3]; 3]) -> [R; 3]
         return [zero, one, zero];
     }
     let vc = d1 * d4 - d3 * d2;
-    if vc <= zero && d1 >= zero && d3 <= zero {
+    if vc <= zero && d1 >= zero && d3 <= zero && d1 > d3 {
         let v = ratio(d1, d1 - d3);
         return [one - v, v, zero];
     }
@@ -145,8 +145,47 @@ pub fn closest_on_triangle<R: Real>(p: [R; 3], [a, b, c]: [[R; 3]; 3]) -> [R; 3]
         return [zero, one - w, w];
     }
     let sum = va + vb + vc;
+    if sum <= R::from_f64(NEEDLE) * dot(ab, ab) * dot(ac, ac) {
+        return closest_on_needle(p, [a, b, c]);
+    }
     let (v, w) = (ratio(vb, sum), ratio(vc, sum));
     [one - v - w, v, w]
+}
+
+/// Squared sine of the angle at the first corner of a triangle, below which products of scalar products lose its area to
+/// rounding in `f32`.
+const NEEDLE: f64 = 1e-2;
+
+/// [`closest_on_triangle`] where the point may be above the inside of a triangle almost without area: its closest edge, or
+/// above the inside, by cross products.
+#[cold]
+fn closest_on_needle<R: Real>(p: [R; 3], corners: [[R; 3]; 3]) -> [R; 3] {
+    let [a, b, c] = corners;
+    let (ab, ac, ap) = (sub(b, a), sub(c, a), sub(p, a));
+    let normal = cross(ab, ac);
+    let sum = dot(normal, normal);
+    let (v, w) = (ratio(dot(normal, cross(ap, ac)), sum), ratio(dot(normal, cross(ab, ap)), sum));
+    let inside = [R::ONE - v - w, v, w];
+    let mut best = None;
+    if inside.iter().all(|&weight| weight >= R::ZERO) {
+        best = Some((inside, distance_squared(p, interpolate(corners, inside))));
+    }
+    for k in 0..3 {
+        let ends = [k, (k + 1) % 3];
+        let on_edge = closest_on_segment(p, ends.map(|end| corners[end]));
+        let mut weights = [R::ZERO; 3];
+        (weights[ends[0]], weights[ends[1]]) = (on_edge[0], on_edge[1]);
+        let distance = distance_squared(p, interpolate(corners, weights));
+        if best.is_none_or(|(_, least)| distance < least) {
+            best = Some((weights, distance));
+        }
+    }
+    best.map_or(inside, |(weights, _)| weights)
+}
+
+fn distance_squared<R: Real>(p: [R; 3], q: [R; 3]) -> R {
+    let line = sub(p, q);
+    dot(line, line)
 }
 
 /// The closest points of two segments, as weights of the ends of each (Ericson 2005, §5.1.9).
@@ -218,6 +257,30 @@ mod tests {
                 query::closest_points(&here, &first, &here, &second, 100.0).unwrap()
             {
                 prop_assert!((gap - (a - b).length()).abs() < 1e-6, "{gap} against {}", (a - b).length());
+            }
+        }
+
+        #[test]
+        fn no_edge_of_a_needle_is_closer_than_its_closest_point(
+            p in point(),
+            ends in proptest::array::uniform2(point()),
+            along in prop_oneof![Just(0.0), Just(1.0), -0.5..1.5f64],
+            aside in point(),
+            height in prop_oneof![Just(0.0), (-9.0..-1.0f64).prop_map(|power| 10f64.powf(power))],
+            order in Just([0, 1, 2]).prop_shuffle(),
+        ) {
+            let [a, b] = ends;
+            let c = add(add(a, scale(sub(b, a), along)), scale(aside, height));
+            let corners = order.map(|k| [a, b, c][k].map(|x| x as f32));
+            let p = p.map(|x| x as f32);
+            let distance_to = |q: [f32; 3]| {
+                let line = sub(p.map(f64::from), q.map(f64::from));
+                dot(line, line).sqrt()
+            };
+            let found = distance_to(interpolate(corners, closest_on_triangle(p, corners)));
+            for edge in [0, 1, 2].map(|k| [corners[k], corners[(k + 1) % 3]]) {
+                let on_edge = distance_to(interpolate(edge, closest_on_segment(p, edge)));
+                prop_assert!(found <= on_edge + 1e-5, "{found} where an edge is {on_edge} away");
             }
         }
 
