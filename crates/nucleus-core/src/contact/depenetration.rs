@@ -34,12 +34,30 @@ pub struct Depenetration {
     has_begun: bool,
 }
 
+/// What is in the way of a point that leaves a collider.
+#[derive(Debug, Clone, Copy)]
+pub struct Obstacle {
+    /// The point.
+    pub point: u32,
+    /// The other collider by its index; `None` for the ground.
+    pub collider: Option<usize>,
+    /// Its unit normal at the point.
+    pub normal: Point,
+    /// How far the point may go against the normal, in metres.
+    pub room: f64,
+}
+
 encode_struct!([] Depenetration { points: Vec<(u32, u32)>, suspects: Vec<u32>, has_begun: bool });
 
 impl Depenetration {
     /// Whether a point is inside.
     pub fn contains(&self, point: u32) -> bool {
-        self.points.binary_search_by_key(&point, |&(point, _)| point).is_ok()
+        self.exit_of(point).is_some()
+    }
+
+    /// The exit face of a point, if it is inside.
+    pub fn exit_of(&self, point: u32) -> Option<u32> {
+        self.points.binary_search_by_key(&point, |&(point, _)| point).ok().map(|at| self.points[at].1)
     }
 
     /// Forgets all points: they stay where they are.
@@ -92,46 +110,81 @@ impl Depenetration {
         step: &ColliderStep<'_, R>,
         mut freed: impl FnMut(u32),
     ) {
+        let before = std::mem::take(&mut self.points);
+        let before = Self { points: before, ..Self::default() };
         let Self { points, suspects, .. } = self;
-        suspects.extend(points.iter().map(|&(point, _)| point));
+        suspects.extend(before.points.iter().map(|&(point, _)| point));
         suspects.sort_unstable();
         suspects.dedup();
-        let before = std::mem::take(points);
         for point in suspects.drain(..).filter(|&point| step.has_full_strength(point)) {
             let place = step.start_position(point);
-            let face = exit_face(place, collider, state, step.time[0]);
+            let last = before.exit_of(point);
+            let face = exit_face(place, last, collider, state, step.time[0]);
             points.extend(face.map(|face| (point, face)));
-            if face.is_none() && before.binary_search_by_key(&point, |&(point, _)| point).is_ok() {
+            if face.is_none() && last.is_some() {
                 freed(point);
             }
         }
     }
 
-    /// Moves every point at least a step farther out, along its face's normal. Along the face it is free.
-    pub fn push_outward<R: Real>(&self, collider: &ColliderModel, step: &ColliderStep<'_, R>) {
-        self.points.iter().for_each(|&(point, face)| push_outward(point, face, collider, step));
+    /// Moves every point at least a step farther out, along its face's normal, as far as `room` allows, given the point and
+    /// the normal, in metres. Along the face it is free.
+    pub fn push_outward<R: Real>(
+        &self,
+        collider: &ColliderModel,
+        step: &ColliderStep<'_, R>,
+        room: impl Fn(u32, &Point) -> f64,
+    ) {
+        self.points.iter().for_each(|&(point, face)| {
+            push_outward(point, face, collider, step, |outward| room(point, outward));
+        });
     }
 }
 
-/// Moves a point at least a step farther out, along the normal of its exit face.
-pub fn push_outward<R: Real>(point: u32, face: u32, collider: &ColliderModel, step: &ColliderStep<'_, R>) {
+/// Moves a point at least a step farther out, along the normal of its exit face, as far as `room` allows, given the normal.
+pub fn push_outward<R: Real>(
+    point: u32,
+    face: u32,
+    collider: &ColliderModel,
+    step: &ColliderStep<'_, R>,
+    room: impl Fn(&Point) -> f64,
+) {
     let [from, to] = step.collider_positions(collider.boundary.triangles[face as usize]);
-    let normal = |corners: [Point; 3]| {
-        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-        normal.try_normalize(0.0).unwrap_or_default()
-    };
-    let outward = normal(to);
-    let before = normal(from).dot(&(step.start_position(point) - from[0]));
+    let outward = unit_normal(to);
+    let before = unit_normal(from).dot(&(step.start_position(point) - from[0]));
     let now = outward.dot(&(step.end_position(point) - to[0]));
     let target = (before + DEPENETRATION_SPEED * step.h.to_f64()).min(step.thickness.to_f64());
-    if now < target {
-        step.push_point(point, outward * (target - now), outward * (target - now).min(target - before));
+    let push = (target - now).min(room(&outward));
+    if push > 0.0 {
+        step.push_point(point, outward * push, outward * push.min(target - before));
     }
 }
 
-/// The face nearest to a position inside a closed collider; `None` outside.
-pub fn exit_face(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> Option<u32> {
-    is_inside(place, collider, state, time).then(|| nearest_face(place, collider, state, time)).flatten()
+/// The unit normal of a face; zero where it has no area.
+pub fn unit_normal(corners: [Point; 3]) -> Point {
+    let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+    normal.try_normalize(0.0).unwrap_or_default()
+}
+
+/// The face through which a position inside a closed collider leaves; `None` outside. That is the nearest, of those on the
+/// same side as its `last` exit face: a point that was pressed in through one side is nearer to another when it is deep, where
+/// it would come out beside the collider.
+pub fn exit_face(
+    place: Point,
+    last: Option<u32>,
+    collider: &ColliderModel,
+    state: &ColliderState,
+    time: f64,
+) -> Option<u32> {
+    if !is_inside(place, collider, state, time) {
+        return None;
+    }
+    let normal = |face: u32| {
+        unit_normal(collider.boundary.triangles[face as usize].map(|point| state.point(point, time)))
+    };
+    let of_last = last.map(normal).filter(|normal| *normal != Point::zeros());
+    let is_on_side = |face: u32| of_last.is_none_or(|last| normal(face).dot(&last) > 0.0);
+    nearest_face(place, is_on_side, collider, state, time)
 }
 
 /// Inside test: whether a ray from a position leaves a closed mesh an odd number of times. A ray through an edge
@@ -165,8 +218,14 @@ fn ray_crosses(corners: [Point; 3]) -> bool {
     inside && normal.x != 0.0 && normal.dot(&corners[0]) / normal.x > 0.0
 }
 
-/// The face nearest to a position.
-fn nearest_face(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> Option<u32> {
+/// The face nearest to a position of those that `is_exit` accepts.
+fn nearest_face(
+    place: Point,
+    is_exit: impl Fn(u32) -> bool,
+    collider: &ColliderModel,
+    state: &ColliderState,
+    time: f64,
+) -> Option<u32> {
     let distance = |face: u32| {
         let corners = collider.boundary.triangles[face as usize].map(|point| state.point(point, time));
         let weights = closest_on_triangle(place.into(), corners.map(Into::into));
@@ -181,7 +240,7 @@ fn nearest_face(place: Point, collider: &ColliderModel, state: &ColliderState, t
         let mut best: Option<(f64, u32)> = None;
         state.bvh.query(&search_box, |face| {
             let found = (distance(face).norm(), face);
-            if best.is_none_or(|best| found < best) {
+            if best.is_none_or(|best| found < best) && is_exit(face) {
                 best = Some(found);
             }
         });

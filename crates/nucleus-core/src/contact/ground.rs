@@ -4,6 +4,7 @@
 //! moves within a frame from where the last one left it, as colliders do (§2.4).
 
 mod fours;
+pub mod pass;
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -253,6 +254,11 @@ impl<R: Real> GroundContact<'_, R> {
         let row = self.writer.row(point);
         let gap = self.plane.height_now(point, row.xyz());
         gap < self.thickness(point) * R::from_f64(1.0 - TOUCHING) && row.0[3] > R::ZERO
+    }
+
+    /// How far a point is above its thickness, in metres.
+    pub fn room(&self, point: u32) -> R {
+        self.plane.height_now(point, self.writer.row(point).xyz()) - self.thickness(point)
     }
 
     /// Whether a point went through the plane: it began the step above and is below now. A contact that is carried out in

@@ -23,9 +23,10 @@ use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::pass::resolve_cloth_contacts;
 use crate::contact::collider::free_points::settle_free_points;
 use crate::contact::collider::pass::{
-    accept_unresolved_collider_contacts, certify_collider_contacts, certify_ground_contacts,
-    resolve_collider_contacts, revert_collider_contacts,
+    accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
+    revert_collider_contacts,
 };
+use crate::contact::ground::pass::certify_ground_contacts;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::math::{Real, Row4};
 use crate::output::{Stage, StepObserver};

@@ -11,6 +11,7 @@ use crate::contact::collider::ColliderState;
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::motion_bounds::MotionBox;
 use crate::contact::collider::near_points::NearPoints;
+use crate::contact::depenetration::Obstacle;
 use crate::contact::ground::Ground;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
@@ -61,6 +62,8 @@ pub struct ContactSystem<R: Real> {
     pub touches: Vec<bool>,
     /// Whether each cloth has had a contact in this frame.
     pub has_touched: Vec<AtomicBool>,
+    /// What is in the way of the points of a cloth that leave a collider.
+    pub obstacles: Vec<Obstacle>,
     /// The ground plane.
     pub ground: Ground<R>,
     /// Whether each cloth is an object of free points in this frame, without lists of contacts.
@@ -103,6 +106,7 @@ impl<R: Real> ContactSystem<R> {
             // Cloth that starts from a saved state may be in contact; the first frame finds out.
             touches: cloths.iter().map(|cloth| !cloth.start.positions.is_empty()).collect(),
             has_touched: models.iter().map(|_| AtomicBool::new(false)).collect(),
+            obstacles: Vec::new(),
             ground: Ground::default(),
             is_free: vec![false; models.len()],
             free_gap: f64::INFINITY,

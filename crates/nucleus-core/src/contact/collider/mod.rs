@@ -22,7 +22,8 @@
 //! | sweeps over these, certificates and fallbacks | [`near_response`] |
 //! | fallbacks for points of a liquid or of links | [`free_points`] |
 //! | starts inside the contact thickness | [`start_gaps`] |
-//! | the passes of a time step | [`pass`] |
+//! | points that leave one while another is in their way | [`pinched`] |
+//! | the passes of a time step, over each cloth's lists of contacts | [`pass`], [`lists`] |
 
 pub mod active_set;
 pub mod broad_phase;
@@ -31,6 +32,7 @@ pub mod contact;
 pub mod contacts;
 pub mod frame_start;
 pub mod free_points;
+pub mod lists;
 pub mod motion_bounds;
 pub mod near_collider;
 mod near_face;
@@ -38,6 +40,7 @@ pub mod near_points;
 mod near_response;
 pub mod near_search;
 pub mod pass;
+pub mod pinched;
 mod plane_columns;
 pub mod query;
 mod response;

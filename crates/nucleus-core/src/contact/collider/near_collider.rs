@@ -58,14 +58,14 @@ impl<'a, R: Real> NearCollider<'a, R> {
         !self.inside.has_begun() || self.inside.contains(point)
     }
 
-    /// The face through which a position inside leaves it; `None` outside.
-    pub fn exit_face(&self, place: Vector3<f64>, time: f64) -> Option<u32> {
-        exit_face(place, self.model, self.state, time)
+    /// The face through which a point leaves it that is inside at this place; `None` outside.
+    pub fn exit_face(&self, point: u32, place: Vector3<f64>, time: f64) -> Option<u32> {
+        exit_face(place, self.inside.exit_of(point), self.model, self.state, time)
     }
 
     /// Moves a point inside at least a step farther out of its exit face.
     pub fn push_outward(&self, point: u32, face: u32, step: &ColliderStep<'_, R>) {
-        push_outward(point, face, self.model, step);
+        push_outward(point, face, self.model, step, |_| f64::INFINITY);
     }
 
     /// The corners of a face.

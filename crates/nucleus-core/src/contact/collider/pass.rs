@@ -1,18 +1,18 @@
-//! The passes of a time step over contacts with colliders and the ground plane.
+//! The passes of a time step over contacts with colliders, and over the ground plane before them.
 
-use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 
 use crate::contact::cloth::certify::Frozen;
 use crate::contact::collider::broad_phase::update_collider_candidates;
-use crate::contact::collider::contact::Outcome;
 use crate::contact::collider::contacts::{ColliderContacts, certify, for_unproven_points, revert_to_start};
+use crate::contact::collider::lists::for_contacts_of;
+use crate::contact::collider::pinched::push_points_outward;
 use crate::contact::collider::start_gaps::release_cleared_points;
 use crate::contact::collider::sweep::{adhere, resolve};
-use crate::contact::ground::GroundContact;
+use crate::contact::ground::pass::{apply_ground_adhesion, resolve_ground_contacts, revert_ground_contacts};
 use crate::contact::material::ContactMaterial;
-use crate::contact::system::{ContactPass, ContactSystem};
-use crate::contact::time_step::{ColliderStep, ColliderStepArgs, ContactCounters, PositionWriter};
+use crate::contact::system::ContactPass;
+use crate::contact::time_step::{ColliderStep, ContactCounters};
 use crate::math::Real;
 use crate::output::{Stage, StepObserver};
 use crate::parallel::thread_pool::ThreadPool;
@@ -38,23 +38,15 @@ pub fn resolve_collider_contacts<R: Real>(
         for_contacts_of(pass, cloth, |list, step, pool, counters| {
             let step = step.with_thickness_scale(thickness_scale);
             resolve(list, &step, pool, counters);
-            list.depenetration.push_outward(&model.colliders[list.collider], &step);
         });
+        push_points_outward(pass, cloth, thickness_scale);
         *pass.contact.has_touched[cloth].get_mut() |= *pass.counters.contacts.get_mut() > before;
     }
 }
 
 /// Applies adhesion to the ground and to colliders.
 pub fn apply_collider_adhesion<R: Real>(pass: &mut ContactPass<'_, R>) {
-    if pass.frame.plane.is_some()
-        && pass.contact.ground_materials.iter().flatten().any(ContactMaterial::has_adhesion)
-    {
-        let model = pass.model;
-        for_ground_contacts(pass, 1.0, |cloth, ground, pool, _| {
-            let blocks = &model.cloths[cloth].blocks;
-            pool.parallel_for(blocks.len(), |block| ground.adhere(blocks.range(block)));
-        });
-    }
+    apply_ground_adhesion(pass);
     for cloth in 0..pass.model.cloths.len() {
         let has_adhesion = ContactMaterial::has_adhesion;
         let materials = pass.contact.collider_materials_of(cloth);
@@ -85,24 +77,6 @@ pub fn certify_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> [u64
     counts
 }
 
-/// The number of points that went through the ground plane in this time step. Marks their cloths.
-pub fn certify_ground_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> u64 {
-    let marks = std::mem::take(&mut pass.contact.has_unproven[1]);
-    let (model, all) = (pass.model, AtomicU64::new(0));
-    for_ground_contacts(pass, 1.0, |cloth, ground, pool, _| {
-        let blocks = &model.cloths[cloth].blocks;
-        pool.parallel_for(blocks.len(), |block| {
-            let passed = blocks.range(block).filter(|&point| ground.has_passed(point)).count() as u64;
-            if passed > 0 {
-                marks[cloth].store(true, Ordering::Relaxed);
-                all.fetch_add(passed, Ordering::Relaxed);
-            }
-        });
-    });
-    pass.contact.has_unproven[1] = marks;
-    all.into_inner()
-}
-
 /// Reverts contacts without certificate, with the ground and with colliders, to the start of the time step, and freezes
 /// their points.
 pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
@@ -110,14 +84,7 @@ pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
     let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
     let mut freeze =
         |point: u32| frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = Frozen::Carried);
-    let model = pass.model;
-    for_ground_contacts(pass, 1.0, |cloth, ground, _, counters| {
-        for point in model.cloths[cloth].points().filter(|&point| ground.has_passed(point)) {
-            ground.revert(point);
-            freeze(point);
-            Outcome::Reverted.count(counters);
-        }
-    });
+    revert_ground_contacts(pass, &mut freeze);
     for_all_contacts(pass, |list, step, pool, counters| {
         revert_to_start(list, step, pool, counters, &mut freeze)
     });
@@ -149,85 +116,5 @@ fn for_all_contacts<R: Real>(
             update_collider_candidates(pass, cloth);
             for_contacts_of(pass, cloth, |list, step, pool, counters| work(list, &step, pool, counters));
         }
-    }
-}
-
-/// Calls `work` with the contacts of a cloth and each collider that it collides with.
-pub(super) fn for_contacts_of<R: Real>(
-    pass: &mut ContactPass<'_, R>,
-    cloth: usize,
-    mut work: impl FnMut(&mut ColliderContacts<R>, ColliderStep<'_, R>, &ThreadPool, &ContactCounters),
-) {
-    let ContactPass { state, pool, contact, counters, .. } = pass;
-    let ContactSystem { collider_states, collider_contacts, collider_materials, material_maps, .. } = contact;
-    for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
-        let Some(material) = collider_materials[cloth * collider_states.len() + list.collider] else {
-            continue;
-        };
-        let view = ColliderStepArgs {
-            material,
-            material_maps,
-            at: list.collider,
-            h: pass.schedule.h,
-            time: [pass.span.from, pass.span.to],
-            interval: list.interval,
-        };
-        let collider = list.collider;
-        work(list, view.of(state, &collider_states[collider]), pool, counters);
-    }
-}
-
-fn resolve_ground_contacts<R: Real>(pass: &mut ContactPass<'_, R>, thickness_scale: f64) {
-    let model = pass.model;
-    for_ground_contacts(pass, thickness_scale, |cloth, ground, pool, counters| {
-        let blocks = &model.cloths[cloth].blocks;
-        pool.parallel_for(blocks.len(), |block| push(ground, blocks.range(block), counters));
-    });
-}
-
-/// Pushes some points of one cloth above the ground plane.
-pub(super) fn push_by_ground<R: Real>(
-    pass: &mut ContactPass<'_, R>,
-    of: usize,
-    points: &[u32],
-    thickness_scale: f64,
-) {
-    for_ground_contacts(pass, thickness_scale, |cloth, ground, _, counters| {
-        let own = points.iter().filter(|_| cloth == of);
-        own.for_each(|&point| push(ground, point..point + 1, counters));
-    });
-}
-
-fn push<R: Real>(ground: &GroundContact<'_, R>, points: Range<u32>, counters: &ContactCounters) {
-    let pushed = ground.resolve(points);
-    if pushed > 0 {
-        ground.has_touched.store(true, Ordering::Relaxed);
-        counters.contacts.fetch_add(pushed, Ordering::Relaxed);
-    }
-}
-
-/// Calls `work` with each cloth that collides with the ground.
-fn for_ground_contacts<R: Real>(
-    pass: &mut ContactPass<'_, R>,
-    thickness_scale: f64,
-    mut work: impl FnMut(usize, &GroundContact<'_, R>, &ThreadPool, &ContactCounters),
-) {
-    let ContactPass { state, pool, contact, counters, .. } = pass;
-    let ContactSystem { ground, ground_materials, material_maps, has_touched, .. } = &**contact;
-    let Some(plane) = ground.in_step(pass.span) else { return };
-    let (writer, start, _) = PositionWriter::of(state);
-    for (index, material) in ground_materials.iter().enumerate() {
-        let Some(material) = material.filter(|_| contact.is_listed(index)) else { continue };
-        let ground = GroundContact {
-            writer,
-            start,
-            plane,
-            thickness_scale: R::from_f64(thickness_scale),
-            material,
-            material_maps,
-            h: R::from_f64(pass.schedule.h),
-            has_touched: &has_touched[index],
-        };
-        work(index, &ground, pool, counters);
     }
 }

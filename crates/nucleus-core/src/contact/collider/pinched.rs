@@ -1,0 +1,83 @@
+//! Points that leave a collider while another collider or the ground is in their way.
+//!
+//! Such a point is pinched: it goes out no farther than there is room, and moves with what it touches. Pushed by both in
+//! turn, it would gain speed, and be moved sideways (Baraff, Witkin and Kass 2003, *Untangling cloth*, §6, flypapering).
+
+use nalgebra::Vector3;
+
+use crate::contact::collider::lists::for_contacts_of;
+use crate::contact::depenetration::{Obstacle, unit_normal};
+use crate::contact::ground::pass::for_ground_contacts;
+use crate::contact::system::ContactPass;
+use crate::math::Real;
+
+/// Pushes the points of a cloth that are inside colliders outward, as far as there is room.
+pub fn push_points_outward<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, thickness_scale: f64) {
+    let of_cloth = pass.contact.lists_of(cloth);
+    if pass.contact.collider_contacts[of_cloth].iter().all(|list| list.depenetration.points.is_empty()) {
+        return;
+    }
+    let mut obstacles = std::mem::take(&mut pass.contact.obstacles);
+    find_obstacles(pass, cloth, thickness_scale, &mut obstacles);
+    let model = pass.model;
+    for_contacts_of(pass, cloth, |list, step, _, _| {
+        let step = step.with_thickness_scale(thickness_scale);
+        let others = |point: u32| {
+            let first = obstacles.partition_point(|obstacle| obstacle.point < point);
+            let of_point = obstacles[first..].iter().take_while(move |obstacle| obstacle.point == point);
+            of_point.filter(|obstacle| obstacle.collider != Some(list.collider))
+        };
+        list.depenetration.push_outward(&model.colliders[list.collider], &step, |point, outward| {
+            let towards =
+                others(point).map(|obstacle| (obstacle.room.max(0.0), -obstacle.normal.dot(outward)));
+            let rooms = towards.filter(|&(_, share)| share > 0.0).map(|(room, share)| room / share);
+            rooms.fold(f64::INFINITY, f64::min)
+        });
+    });
+    pass.contact.obstacles = obstacles;
+}
+
+/// Lists what is in the way of the points of a cloth that are inside any collider, sorted by point.
+fn find_obstacles<R: Real>(
+    pass: &mut ContactPass<'_, R>,
+    cloth: usize,
+    thickness_scale: f64,
+    obstacles: &mut Vec<Obstacle>,
+) {
+    obstacles.clear();
+    let model = pass.model;
+    // The exits come first: every point inside is among them.
+    for_contacts_of(pass, cloth, |list, step, _, _| {
+        for &(point, face) in &list.depenetration.points {
+            let corners = model.colliders[list.collider].boundary.triangles[face as usize];
+            let normal = unit_normal(step.collider_positions(corners)[1]);
+            obstacles.push(Obstacle { point, collider: Some(list.collider), normal, room: 0.0 });
+        }
+    });
+    let exits = obstacles.len();
+    for_contacts_of(pass, cloth, |list, step, _, _| {
+        let step = step.with_thickness_scale(thickness_scale);
+        for at in 0..exits {
+            let point = obstacles[at].point;
+            if list.depenetration.contains(point) {
+                continue;
+            }
+            let first = list.by_point.partition_point(|&key| key < u64::from(point) << 32);
+            let of_point = list.by_point[first..].iter().take_while(|&&key| (key >> 32) as u32 == point);
+            for &key in of_point {
+                let contact = &list.point_face[key as u32 as usize];
+                let room = (contact.gap(&step) - contact.rest_gap(&step, [R::ONE])).to_f64();
+                let normal = Vector3::from(contact.normal.map(R::to_f64));
+                obstacles.push(Obstacle { point, collider: Some(list.collider), normal, room });
+            }
+        }
+    });
+    for_ground_contacts(pass, thickness_scale, |of, ground, _, _| {
+        for at in 0..if of == cloth { exits } else { 0 } {
+            let point = obstacles[at].point;
+            let normal = Vector3::from(ground.plane.normal().map(R::to_f64));
+            obstacles.push(Obstacle { point, collider: None, normal, room: ground.room(point).to_f64() });
+        }
+    });
+    obstacles.sort_unstable_by_key(|obstacle| obstacle.point);
+}
