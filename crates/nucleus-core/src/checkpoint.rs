@@ -120,6 +120,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         window_bounds: _,
         bound_growth: _,
         contact_mask: _,
+        carriers: _,
         obstacles: _,
         has_unproven: _,
         has_touched: _,

@@ -18,9 +18,10 @@
 use std::sync::atomic::Ordering;
 
 use crate::contact::cloth::broad_phase::update_cloth_candidates;
-use crate::contact::cloth::certify::Frozen;
 use crate::contact::cloth::contacts::ClothContacts;
+use crate::contact::cloth::frozen::Frozen;
 use crate::contact::cloth::pass::resolve_cloth_contacts;
+use crate::contact::collider::affine_motion::AffineMotion;
 use crate::contact::collider::free_points::settle_free_points;
 use crate::contact::collider::pass::{
     accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
@@ -30,7 +31,6 @@ use crate::contact::ground::pass::certify_ground_contacts;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::math::{Real, Row4};
 use crate::output::{Stage, StepObserver};
-use crate::state::State;
 
 /// Attempts of each fallback.
 const PUSH_ATTEMPTS: usize = 4;
@@ -77,11 +77,12 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
             resolve_collider_contacts(pass, thickness_scale, watch);
             pass.contact.contact_mask.clear();
         } else if attempt < PUSHING_ENDS + TRUNCATE_ATTEMPTS {
+            pass.contact.carriers.clear();
             truncate(pass);
             revert_collider_contacts(pass);
         } else if !is_last {
             if attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS {
-                clear_frozen(pass.state, pass.contact);
+                begin_freezing(pass);
             }
             revert_collider_contacts(pass);
             freeze(pass);
@@ -129,7 +130,9 @@ fn truncate<R: Real>(pass: &mut ContactPass<'_, R>) {
 fn freeze<R: Real>(pass: &mut ContactPass<'_, R>) {
     let cloth_contacts = pass.contact.cloth_contacts.as_mut();
     let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
-    let reverted = pass.with_cloth_contacts(|cache, step, _| cache.freeze(step, &mut frozen));
+    let carriers = std::mem::take(&mut pass.contact.carriers);
+    let reverted = pass.with_cloth_contacts(|cache, step, _| cache.freeze(step, &mut frozen, &carriers));
+    pass.contact.carriers = carriers;
     *pass.counters.pairs_reverted.get_mut() += reverted.unwrap_or(0);
     if let Some(cloth_contacts) = &mut pass.contact.cloth_contacts {
         cloth_contacts.frozen = frozen;
@@ -137,12 +140,17 @@ fn freeze<R: Real>(pass: &mut ContactPass<'_, R>) {
 }
 
 /// Only pinned points start out frozen: they are carried.
-fn clear_frozen<R: Real>(state: &State<R>, contact: &mut ContactSystem<R>) {
-    let Some(ClothContacts { frozen, .. }) = &mut contact.cloth_contacts else { return };
+fn begin_freezing<R: Real>(pass: &mut ContactPass<'_, R>) {
+    let ContactSystem { carriers, collider_states, cloth_contacts, .. } = &mut *pass.contact;
+    carriers.clear();
+    carriers.extend(
+        collider_states.iter().map(|collider| AffineMotion::of(collider, [pass.span.from, pass.span.to])),
+    );
+    let Some(ClothContacts { frozen, .. }) = cloth_contacts else { return };
     frozen.clear();
     let is_pinned = |row: &Row4<R>| row.0[3] <= R::ZERO;
     let frozen_as = |row| if is_pinned(row) { Frozen::Carried } else { Frozen::Free };
-    frozen.extend(state.displacement.iter().map(frozen_as));
+    frozen.extend(pass.state.displacement.iter().map(frozen_as));
 }
 
 /// Accepts pairs that no fallback resolves. Their contacts are searched anew.

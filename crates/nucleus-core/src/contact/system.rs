@@ -8,6 +8,7 @@ use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::contact::ClothStep;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::collider::ColliderState;
+use crate::contact::collider::affine_motion::AffineMotion;
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::motion_bounds::MotionBox;
 use crate::contact::collider::near_points::NearPoints;
@@ -62,6 +63,8 @@ pub struct ContactSystem<R: Real> {
     pub touches: Vec<bool>,
     /// Whether each cloth has had a contact in this frame.
     pub has_touched: Vec<AtomicBool>,
+    /// The motions of the colliders in a time step in which the safeguard freezes points; `None` for one that deforms.
+    pub carriers: Vec<Option<AffineMotion>>,
     /// What is in the way of the points of a cloth that leave a collider.
     pub obstacles: Vec<Obstacle>,
     /// The ground plane.
@@ -106,6 +109,7 @@ impl<R: Real> ContactSystem<R> {
             // Cloth that starts from a saved state may be in contact; the first frame finds out.
             touches: cloths.iter().map(|cloth| !cloth.start.positions.is_empty()).collect(),
             has_touched: models.iter().map(|_| AtomicBool::new(false)).collect(),
+            carriers: Vec::new(),
             obstacles: Vec::new(),
             ground: Ground::default(),
             is_free: vec![false; models.len()],

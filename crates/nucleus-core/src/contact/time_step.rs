@@ -264,6 +264,16 @@ impl<R: Real> ColliderStep<'_, R> {
         self.position(point, self.row(point).xyz())
     }
 
+    /// Moves a point from its position at the start of the step, unless it is pinned.
+    pub fn move_from_start(&self, point: u32, motion: Point) {
+        let mut row = self.row(point);
+        if row.0[3] > R::ZERO {
+            let start = self.start(point);
+            (0..3).for_each(|axis| row.0[axis] = start[axis] + R::from_f64(motion[axis]));
+            self.writer.place(point, row);
+        }
+    }
+
     /// Pushes a point, unless it is pinned; `depenetration` is the part of the push without velocity.
     pub fn push_point(&self, point: u32, push: Point, depenetration: Point) {
         let mut row = self.row(point);

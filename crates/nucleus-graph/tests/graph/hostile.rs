@@ -150,6 +150,24 @@ fn a_plate_that_lifts_cloth_and_turns_back_passes_no_cloth_and_leaves_no_pair_un
     assert_eq!(audited(&of_nodes(nodes, ""), 6, 1), [0, 0]);
 }
 
+// Around a ball that turns, no two places have the same motion: points that were carried by the faces that they touched closed
+// on cloth that others carried.
+#[test]
+fn cloth_that_a_turning_ball_throws_at_other_cloth_passes_none_and_leaves_no_pair_unresolved() {
+    let nodes = r#""n": nucleus(evaluations: 24),
+        "m1": polyCylinder(radius: 0.243, height: 0.6, subdivisions: (15, 13, 1), translate: (-0.247, 2.65, -0.082),
+            rotate: (73.5, 46.8, 0)),
+        "c1": nCloth(inputMesh: "m1", pointMass: 0.0122, selfCollisionFlag: "Full Surface", thickness: 0.00199),
+        "m2": polyPlane(width: 0.943, height: 0.943, subdivisions: (7, 7), translate: (-0.234, 3.3, -0.048)),
+        "c2": nCloth(inputMesh: "m2", pointMass: 0.7983, selfCollide: false, selfCollisionFlag: "Full Surface",
+            friction: 0.82, bendResistance: 0.066, thickness: keys([(1, 0.00234), (7, 0.00202), (11, 0.00234)])),
+        "k": polySphere(radius: 0.575, subdivisions: (12, 5), translate: keys([
+            (1, (0.394, -2.354, -0.384)), (13, (0.885, 2.188, 1.212), linear), (15, (-0.623, 2.124, -0.306), spline)]),
+            rotate: keys([(1, (88.1, 55.5, 63.2)), (27, (583.8, -344.3, 290.5))])),
+        "r": nRigid(inputMesh: "k", thickness: 0.00052)"#;
+    assert_eq!(audited(&of_nodes(nodes, ""), 17, 1), [0, 0]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 16, max_shrink_iters: 20, failure_persistence: None, ..ProptestConfig::default() })]
 

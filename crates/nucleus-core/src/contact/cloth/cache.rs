@@ -3,10 +3,11 @@
 use std::sync::atomic::AtomicBool;
 
 use crate::bytes::checkpoint_struct;
-use crate::contact::cloth::certify::Frozen;
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::contact_list::{Blocks, ContactList, Replaced};
 use crate::contact::cloth::found_contacts::FoundContacts;
+use crate::contact::cloth::frozen::Frozen;
+use crate::contact::collider::affine_motion::AffineMotion;
 use crate::contact::response::Restitution;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
@@ -167,12 +168,17 @@ impl<R: Real> ContactCache<R> {
     }
 
     /// Freezes the points of every contact without certificate, one after the other. Returns their number.
-    pub fn freeze(&mut self, step: &ClothStep<'_, R>, frozen: &mut [Frozen]) -> u64 {
+    pub fn freeze(
+        &mut self,
+        step: &ClothStep<'_, R>,
+        frozen: &mut [Frozen],
+        carriers: &[Option<AffineMotion>],
+    ) -> u64 {
         let frozen = std::cell::RefCell::new(frozen);
         self.correct_unproven(
             step,
-            |contact| contact.freeze(step, &mut frozen.borrow_mut()),
-            |contact| contact.freeze(step, &mut frozen.borrow_mut()),
+            |contact| contact.freeze(step, &mut frozen.borrow_mut(), carriers),
+            |contact| contact.freeze(step, &mut frozen.borrow_mut(), carriers),
         )
     }
 

@@ -1,10 +1,9 @@
-//! The certificate of a contact among cloths, and its fallbacks in the safeguard: truncation at a division plane,
-//! and freezing.
+//! The certificate of a contact among cloths, and its first fallback in the safeguard: truncation at a division plane.
 
 use crate::contact::ccd::{Separation, separated_throughout};
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::narrow_phase::{ElementPositions, shortest_line};
-use crate::math::{Real, Row4, add, dot, max, sub};
+use crate::math::{Real, dot, max, sub};
 
 /// Share of the distance to a division plane that a point may move: the rest is the gap at the start of the next
 /// step.
@@ -15,19 +14,6 @@ const MAX_ADVANCE: f64 = 0.9;
 pub(super) const START_TOLERANCE: f64 = 0.25;
 /// Smallest share of a gap on either side of a division plane.
 const MIN_PLANE_SHARE: f64 = 0.05;
-
-/// How the safeguard holds a point in a time step. Who is carried carries others on, and is not returned to the start: where
-/// both happened in turn, cloth between a moving collider and other cloth would not be separated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Frozen {
-    /// Not at all.
-    #[default]
-    Free,
-    /// At the start of the step.
-    AtStart,
-    /// With a collider, a pin or a point that these carry.
-    Carried,
-}
 
 impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// Certifies that the two did not pass through each other in this step; may set another normal that proves
@@ -127,24 +113,6 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             row.0[axis] = start[axis] + (row.0[axis] - start[axis]) * share;
         }
         step.writer.place(point, row);
-    }
-
-    /// Returns all points of the two to the start of the step, or moves all with one that is carried: points with a common
-    /// motion pass no part of themselves.
-    pub fn freeze(&mut self, step: &ClothStep<'_, R>, frozen: &mut [Frozen]) {
-        let points = || self.ours.iter().chain(&self.theirs).copied();
-        let carrier = points().find(|&point| frozen[point as usize] == Frozen::Carried);
-        let motion = carrier.map_or([R::ZERO; 3], |point| sub(step.row(point).xyz(), step.start(point)));
-        let state = if carrier.is_some() { Frozen::Carried } else { Frozen::AtStart };
-        for point in points() {
-            let mut row = step.row(point);
-            if row.0[3] > R::ZERO {
-                let [x, y, z] = add(step.start(point), motion);
-                row = Row4([x, y, z, row.0[3]]);
-                step.writer.place(point, row);
-            }
-            frozen[point as usize] = state;
-        }
     }
 }
 

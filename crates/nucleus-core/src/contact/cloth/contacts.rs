@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use crate::contact::cloth::cache::ContactCache;
-use crate::contact::cloth::certify::Frozen;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
 use crate::contact::cloth::found_contacts::FoundContacts;
+use crate::contact::cloth::frozen::Frozen;
 use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::local_anchors::LocalAnchors;
 use crate::contact::cloth::motion_bounds::Trajectories;

@@ -13,7 +13,8 @@
 //! | one contact | [`contact`] |
 //! | a fast lower bound on its gap | [`local_anchors`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
-//! | its certificate, truncation and freezing | [`certify`] |
+//! | its certificate, and truncation at a division plane | [`certify`] |
+//! | points that are frozen, or carried | [`frozen`] |
 //! | intersecting meshes: detection, and untangling | [`intersections`], [`untangling`] |
 //! | the passes of a time step | [`pass`] |
 
@@ -27,6 +28,7 @@ pub mod contacts;
 mod element_bounds;
 pub mod elements;
 pub mod found_contacts;
+pub mod frozen;
 mod group_bounds;
 pub mod intersections;
 pub mod local_anchors;

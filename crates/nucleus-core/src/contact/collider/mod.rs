@@ -23,9 +23,11 @@
 //! | fallbacks for points of a liquid or of links | [`free_points`] |
 //! | starts inside the contact thickness | [`start_gaps`] |
 //! | points that leave one while another is in their way | [`pinched`] |
+//! | the motion of what it carries along | [`affine_motion`] |
 //! | the passes of a time step, over each cloth's lists of contacts | [`pass`], [`lists`] |
 
 pub mod active_set;
+pub mod affine_motion;
 pub mod broad_phase;
 pub mod candidates;
 pub mod contact;
@@ -102,16 +104,21 @@ impl ColliderState {
     pub fn new(model: &ColliderModel) -> Self {
         let third = |t: &[u32; 3]| t.iter().map(|&p| model.positions[p as usize]).sum::<Vector3<f64>>() / 3.0;
         let centres: Vec<_> = model.boundary.triangles.iter().map(third).collect();
+        Self { bvh: Bvh::new(&centres), ..Self::at_rest(&model.positions) }
+    }
+
+    /// Points at rest, without boxes.
+    fn at_rest(positions: &[Vector3<f64>]) -> Self {
         Self {
-            start: model.positions.clone(),
-            end: model.positions.clone(),
+            start: positions.to_vec(),
+            end: positions.to_vec(),
             moves: false,
             max_travel: 0.0,
             mean_travel: Vector3::zeros(),
-            corners: [corners(&model.positions); 2],
+            corners: [corners(positions); 2],
             now: 0.0,
             boxes: Boxes::default(),
-            bvh: Bvh::new(&centres),
+            bvh: Bvh::new(&[]),
             fitted_interval: None,
         }
     }

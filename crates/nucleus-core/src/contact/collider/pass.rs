@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::contact::cloth::certify::Frozen;
+use crate::contact::cloth::frozen::Frozen;
 use crate::contact::collider::broad_phase::update_collider_candidates;
 use crate::contact::collider::contacts::{ColliderContacts, certify, for_unproven_points, revert_to_start};
 use crate::contact::collider::lists::for_contacts_of;
@@ -78,16 +78,26 @@ pub fn certify_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) -> [u64
 }
 
 /// Reverts contacts without certificate, with the ground and with colliders, to the start of the time step, and freezes
-/// their points.
+/// their points: those of a collider with an affine motion, if it is known, move by it, and others with a face.
 pub fn revert_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R>) {
     let cloth_contacts = pass.contact.cloth_contacts.as_mut();
     let mut frozen = cloth_contacts.map(|contacts| std::mem::take(&mut contacts.frozen)).unwrap_or_default();
-    let mut freeze =
-        |point: u32| frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = Frozen::Carried);
-    revert_ground_contacts(pass, &mut freeze);
+    let mut freeze = |point: u32, held: Frozen| {
+        frozen.get_mut(point as usize).into_iter().for_each(|frozen| *frozen = held);
+    };
+    revert_ground_contacts(pass, &mut |point| freeze(point, Frozen::Carried));
+    let carriers = std::mem::take(&mut pass.contact.carriers);
     for_all_contacts(pass, |list, step, pool, counters| {
-        revert_to_start(list, step, pool, counters, &mut freeze)
+        let carrier = carriers.get(list.collider).and_then(Option::as_ref);
+        let held = carrier.map_or(Frozen::Carried, |_| Frozen::With(list.collider as u32));
+        revert_to_start(list, step, pool, counters, &mut |point| {
+            if let Some(carrier) = carrier {
+                step.move_from_start(point, carrier.at(step.start_position(point)));
+            }
+            freeze(point, held);
+        });
     });
+    pass.contact.carriers = carriers;
     if let Some(cloth_contacts) = &mut pass.contact.cloth_contacts {
         cloth_contacts.frozen = frozen;
     }
