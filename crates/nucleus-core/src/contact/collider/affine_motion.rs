@@ -13,7 +13,7 @@ pub struct AffineMotion {
     travel: Vector3<f64>,
 }
 
-/// Largest deviation of a collider's point from the map, as a share of its size.
+/// Largest deviation of a collider's point from the map, as a share of the root mean square distance from its centre.
 const TOLERANCE: f64 = 1e-6;
 /// Smallest variance along an axis, as a share of the largest, where a collider has an extent.
 const FLAT: f64 = 1e-9;
@@ -35,7 +35,7 @@ impl AffineMotion {
             mixed += (q - end_centre) * (p - centre).transpose();
         }
         let map = linear_map(spread, mixed)?;
-        let size = spread.trace().sqrt();
+        let size = (spread.trace() / start.len().max(1) as f64).sqrt();
         let deviation =
             |(p, q): (&Vector3<f64>, &Vector3<f64>)| (map * (p - centre) - (q - end_centre)).norm();
         if start.iter().zip(end).map(deviation).fold(0.0, f64::max) > TOLERANCE * size {
