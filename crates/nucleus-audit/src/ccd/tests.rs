@@ -40,6 +40,13 @@ fn word(result: CcdResult) -> &'static str {
     }
 }
 
+/// Whether two results for one motion agree. Where a pair has no volume throughout, a separating plane may decide it from one
+/// side and rounding hide it from the other: undecided claims nothing.
+fn agree(one: CcdResult, other: CcdResult) -> bool {
+    let words = [word(one), word(other)];
+    words[0] == words[1] || words == ["apart", "undecided"] || words == ["undecided", "apart"]
+}
+
 fn at(before: &Corners, after: &Corners, t: f64) -> Corners {
     std::array::from_fn(|k| before[k] * (1.0 - t) + after[k] * t)
 }
@@ -104,7 +111,8 @@ proptest! {
 
     #[test]
     fn time_can_run_backwards(kind in kinds(), before in coarse(), after in coarse()) {
-        prop_assert_eq!(word(ccd(kind, &before, &after)), word(ccd(kind, &after, &before)));
+        let [one, other] = [ccd(kind, &before, &after), ccd(kind, &after, &before)];
+        prop_assert!(agree(one, other), "{} {}", word(one), word(other));
     }
 
     #[test]
@@ -114,7 +122,7 @@ proptest! {
             ccd(PairKind::EdgeEdge, &before, &after),
             ccd(PairKind::EdgeEdge, &swap(before), &swap(after)),
         ];
-        prop_assert_eq!(word(one), word(other));
+        prop_assert!(agree(one, other), "{} {}", word(one), word(other));
     }
 
     #[test]
