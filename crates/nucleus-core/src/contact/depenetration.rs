@@ -110,8 +110,7 @@ impl Depenetration {
         step: &ColliderStep<'_, R>,
         mut freed: impl FnMut(u32),
     ) {
-        let before = std::mem::take(&mut self.points);
-        let before = Self { points: before, ..Self::default() };
+        let before = Self { points: std::mem::take(&mut self.points), ..Self::default() };
         let Self { points, suspects, .. } = self;
         suspects.extend(before.points.iter().map(|&(point, _)| point));
         suspects.sort_unstable();
