@@ -238,8 +238,38 @@ fn particles_that_slide_on_a_face_keep_their_distance_from_the_whole_mesh() {
     }
 }
 
+/// Two sheets, a collider and particles, none of which touch.
+const OBJECTS: &str = r#""n": nucleus(gravity: 0), "pa": polyPlane(subdivisions: (2, 2)),
+    "pb": polyPlane(subdivisions: (2, 2), translate: (1.1, 0, 0)),
+    "a": nCloth(inputMesh: "pa", selfCollide: false), "b": nCloth(inputMesh: "pb", selfCollide: false),
+    "box": polyCube(translate: (0, -1, 0)), "r": nRigid(inputMesh: "box"),
+    "q": nParticle(position: [(0, 1, 0), (0.3, 1, 0), (2.2, 0.1, 0.7)], radius: 0.1), "#;
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20))]
+
+    /// Above a face or beside it, a link has the length at which it begins.
+    #[test]
+    fn links_of_their_starting_length_move_nothing(
+        kind in prop::sample::select(vec!["transform", "pointToPoint", "pointToSurface", "slideOnSurface"]),
+        first in prop::sample::select(vec!["a", "a.vtx[0:3]", "a.e[border]", "a.f[*]", "a.f[0]", "r", "r.f[0]"]),
+        second in prop::sample::select(vec!["b", "b.vtx[2]", "b.e[*]", "b.f[1:2]", "b.border", "q"]),
+        method in prop::sample::select(vec!["weld", "spring", "rubberBand"]),
+        connection in 0..3,
+    ) {
+        let nodes = format!(r#"{OBJECTS}
+            "s": dynamicConstraint(type: {kind}, components: ["{first}", "{second}"], constraintMethod: {method},
+                connectionMethod: {connection}, maxDistance: 0.6)"#);
+        let (scene, _) = read_scene_text(&of_nodes(&nodes, ""), Path::new("test.ron")).expect("it can be read");
+        if let Ok(program) = compile(&scene) {
+            for name in ["a", "b", "q"] {
+                let [start, end] = [0, 3].map(|frames| places(&program, frames, name));
+                for (from, to) in start.iter().flatten().zip(end.iter().flatten()) {
+                    prop_assert!((from - to).abs() < 1e-3, "{name}: {from} to {to}");
+                }
+            }
+        }
+    }
 
     /// Whatever is joined with whatever, a scene compiles to an error or runs and stays finite.
     #[test]
@@ -253,8 +283,7 @@ proptest! {
         glue in prop::sample::select(vec![0.0, 0.1, 1.0]),
         bend: bool,
     ) {
-        let nodes = format!(r#"{PAIR}"box": polyCube(translate: (0, -1, 0)), "r": nRigid(inputMesh: "box"),
-            "q": nParticle(position: [(0, 1, 0), (0.3, 1, 0)]),
+        let nodes = format!(r#"{OBJECTS}
             "s": dynamicConstraint(type: {kind}, components: ["{first}", "{second}"], constraintMethod: {method},
                 connectionMethod: {connection}, maxDistance: 0.6, glueStrength: {glue}, bend: {bend}, bendBreakAngle: 40)"#);
         let (scene, _) = read_scene_text(&of_nodes(&nodes, ""), Path::new("test.ron")).expect("it can be read");

@@ -139,6 +139,20 @@ impl<R: Real> Placed<'_, R> {
     }
 }
 
+impl<R: Real> Placed<'_, R> {
+    /// The unit vector along which a sliding link keeps its rest length: the normal of the face that its foot is on, or
+    /// `beside`, the line from a foot on an edge, on the side that the rest length names.
+    fn away(&self, corners: [u32; 3], weights: [f64; 3], beside: Point, rest: f64) -> Point {
+        let normal = self.normal(corners, weights, false);
+        let is_below = beside.dot(&normal) * rest.signum() < -0.5;
+        match beside == Point::zeros() {
+            true => normal,
+            false if is_below => -beside * rest.signum(),
+            false => beside * rest.signum(),
+        }
+    }
+}
+
 impl<R: Real> ConstraintLinks<R> {
     fn placed<'a>(
         &'a self,
@@ -171,14 +185,18 @@ impl<R: Real> ConstraintLinks<R> {
                 let foot = placed.at(corners, weights);
                 let place = foot + vector(link, &self.surface[k].ends, state, prescribed, time);
                 let mut nearest = placed.nearest(place, corners, weights);
+                let is_on_edge = nearest.1.iter().any(|weight| *weight <= 0.0);
+                let line = place - placed.at(nearest.0, nearest.1);
+                let beside = line.try_normalize(0.0).filter(|_| is_on_edge).unwrap_or_default();
                 if share < 1.0 {
                     let lagging = foot + (placed.at(nearest.0, nearest.1) - foot) * share;
                     nearest = placed.nearest(lagging, corners, weights);
                 }
-                placed.side(nearest.0, nearest.1)
+                (placed.side(nearest.0, nearest.1), beside)
             });
-            if let Some(side) = moved {
+            if let Some((side, beside)) = moved {
                 self.links[at].sides[1] = side;
+                self.surface[k].beside = beside;
                 self.surface[k].ends = Ends::new(&self.links[at], models.0);
             }
         }
@@ -203,7 +221,10 @@ impl<R: Real> ConstraintLinks<R> {
             let (link, ends) = (self.links[at], self.surface[k].ends);
             let Some(placed) = self.placed(at, models, state, prescribed, time) else { continue };
             let (corners, weights) = placed.corners(&link.sides[1]);
-            let normal = placed.normal(corners, weights, frame.slides);
+            let normal = match frame.slides && link.rest != 0.0 {
+                true => placed.away(corners, weights, self.surface[k].beside, link.rest),
+                false => placed.normal(corners, weights, frame.slides),
+            };
             let d = vector(&link, &ends, state, prescribed, time);
             let mobility = ends.mobility(&state.displacement);
             if mobility <= 0.0 {

@@ -19,6 +19,8 @@ pub struct SurfaceRow {
     pub link: u32,
     /// Its free points; those of the foot change where it slides.
     pub ends: Ends,
+    /// Direction from the foot of a sliding link that lies on an edge, to a place beside the faces; else zero.
+    pub beside: Point,
     /// Impulse since the start of the substep in N·s.
     pub impulse: Point,
 }
@@ -26,7 +28,7 @@ pub struct SurfaceRow {
 impl SurfaceRow {
     /// The row of a link.
     pub fn new(link: u32, ends: Ends) -> Self {
-        Self { link, ends, impulse: Point::zeros() }
+        Self { link, ends, beside: Point::zeros(), impulse: Point::zeros() }
     }
 }
 

@@ -272,9 +272,12 @@ impl Forming<'_> {
         Place { side, at: on.place, element }
     }
 
-    /// The link of two places; on a surface with this normal, its rest length is along it.
+    /// The link of two places; on a surface with this normal, its rest length is along it. A link that stays at a place
+    /// beside the surface is a distance, for the normal would pull it over the surface at once.
     pub(super) fn link(&self, [(from, a), (to, b)]: [(&Member, Place); 2], normal: Option<Point>) -> Link {
         let line = a.at - b.at;
+        let is_above = |n: &Point| (line - n * line.dot(n)).norm() <= 1e-3 * line.norm();
+        let normal = normal.filter(|normal| self.values.slides() || is_above(normal));
         let rest = normal.map_or(line.norm(), |normal| line.dot(&normal));
         let (ours, theirs) = (from.factors(a.element), to.factors(b.element));
         let [strength, tangent_strength, glue] = [0, 1, 2].map(|k| ours[k] * theirs[k]);

@@ -17,12 +17,11 @@ use crate::compile::program::{EvaluationInterval, NucleusProgram};
 use crate::graph::EvalContext;
 
 use super::forming::Forming;
-use super::kinds::{self, Values};
+use super::kinds::Values;
 use super::member::{ConstraintSource, MemberObject, Part, Places};
 
-/// `restLengthMethod: constant`, `connectionUpdate: per frame`.
+/// `restLengthMethod: constant`.
 const CONSTANT: i32 = 1;
-const PER_FRAME: i32 = 1;
 /// `bendBreakAngle` of a tearable surface that keeps the bend resistance of its cloth, in degrees.
 const TEARABLE_BREAK_ANGLE: f64 = 5.0;
 
@@ -73,10 +72,8 @@ impl EvaluationInterval<'_> {
         for (source, formed) in sources.filter(|(source, _)| source.part.is_some()) {
             let values = Values::new(&self.to, source.node);
             let is_enabled = self.is_enabled(source);
-            let slides = values.kind == kinds::SLIDE_ON_SURFACE
-                || values.kind == kinds::POINT_TO_SURFACE
-                    && values.choice(&con::CONNECTION_UPDATE) == PER_FRAME;
-            let per_frame = values.choice(&con::CONNECTION_UPDATE) == PER_FRAME && !slides;
+            let slides = values.slides();
+            let per_frame = values.updates_per_frame() && !slides;
             let links = match is_enabled {
                 true if !*formed || per_frame => Some(self.formed_links(source, position)),
                 false if *formed => Some(Vec::new()),

@@ -18,6 +18,8 @@ pub(super) const MATCH: i32 = 6;
 pub(super) const TEARABLE: i32 = 7;
 pub(super) const DISABLE_COLLISION: i32 = 8;
 pub(super) const EXCLUDE_PAIRS: i32 = 9;
+/// `connectionUpdate: per frame`.
+const PER_FRAME: i32 = 1;
 
 /// The values that each kind writes, where they differ from the defaults of the node. `type: transform` means pins
 /// unless one of [`SOFT`] is given.
@@ -96,6 +98,16 @@ pub(crate) struct Values<'a> {
 impl<'a> Values<'a> {
     pub(crate) fn new(at: &'a EvalContext<'a>, node: NodeId) -> Self {
         Self { at, node, kind: at.get(node, &con::CONSTRAINT_TYPE).0 }
+    }
+
+    /// Whether connections are made anew in every frame.
+    pub(super) fn updates_per_frame(&self) -> bool {
+        self.choice(&con::CONNECTION_UPDATE) == PER_FRAME
+    }
+
+    /// Whether links go on to the closest places of a surface.
+    pub(super) fn slides(&self) -> bool {
+        self.kind == SLIDE_ON_SURFACE || self.kind == POINT_TO_SURFACE && self.updates_per_frame()
     }
 
     fn written<T: FromValue>(&self, key: &Key<T>) -> Option<f64> {
