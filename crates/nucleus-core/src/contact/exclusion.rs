@@ -30,4 +30,11 @@ pub fn update_pair_filter<R: Real>(
             contact.invalidate_bounds(row);
         }
     }
+    // What was welded and excluded until now may intersect.
+    if let Some(cloth_contacts) = &mut contact.cloth_contacts {
+        for (cloth, model) in model.cloths.iter().enumerate() {
+            let differs = model.points().any(|row| contact.pair_filter.differs_at(&before, row as usize));
+            cloth_contacts.untangling.is_search_due[cloth] |= links_changed && differs;
+        }
+    }
 }

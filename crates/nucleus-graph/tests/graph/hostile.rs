@@ -168,6 +168,19 @@ fn cloth_that_a_turning_ball_throws_at_other_cloth_passes_none_and_leaves_no_pai
     assert_eq!(audited(&of_nodes(nodes, ""), 17, 1), [0, 0]);
 }
 
+// Along a tear, elements of both pieces coincide at rest, and only what is apart at rest had a contact distance.
+#[test]
+fn flaps_that_were_torn_from_each_other_do_not_pass_along_their_tear() {
+    let nodes = r#""n": nucleus(gravity: 0, evaluations: 48), "p": polyPlane(width: 2, height: 1, subdivisions: (4, 1)),
+        "c": nCloth(inputMesh: "p", thickness: 0.02, selfCollide: true, bendResistance: 1000, damp: 1),
+        "t": dynamicConstraint(type: tearableSurface, components: ["c.e[where(abs(x) < 0.01)]"], glueStrength: 0.01),
+        "left": dynamicConstraint(type: transform, components: ["c.vtx[0:1]", "c.vtx[5:6]"]),
+        "right": dynamicConstraint(type: transform, components: ["c.vtx[3:4]", "c.vtx[8:9]"], translate: keys([
+            (1, (0, 0, 0)), (4, (0.3, 0, 0), linear), (8, (0.3, 0.3, 0), linear), (14, (-0.3, 0.3, 0), linear),
+            (22, (-0.3, -0.3, 0), linear)]))"#;
+    assert_eq!(audited(&of_nodes(nodes, ""), 24, 1), [0, 0]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 16, max_shrink_iters: 20, failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -90,13 +90,15 @@ impl ElementBounds {
 
 impl ContactDistance {
     /// That of two elements that stay at least `least` metres apart, if they can come closer than `range` times the thickness.
-    /// `rest` holds positions at rest, for elements of one cloth.
+    /// `rest` holds positions at rest, for elements of one cloth. `torn` gives the contact distance in metres of elements that
+    /// coincide at rest, and zero where they do not collide.
     #[inline(always)]
     pub fn new<const N: usize, const M: usize>(
         (ours, theirs): ElementPoints<N, M>,
         least: f32,
         [thickness, range]: [f32; 2],
         rest: Option<&[[f32; 3]]>,
+        torn: impl FnOnce() -> f32,
     ) -> Option<Self> {
         if least >= thickness * range {
             return None;
@@ -106,12 +108,9 @@ impl ContactDistance {
         };
         let enough = thickness / REST_GAP_SHARE;
         let at_rest = rest.map_or(f32::INFINITY, |rest| rest_distance(resting(rest), enough));
-        if at_rest <= 0.0 {
-            return None;
-        }
-        let contact_distance = thickness.min(at_rest * REST_GAP_SHARE);
+        let contact_distance = thickness.min(if at_rest > 0.0 { at_rest * REST_GAP_SHARE } else { torn() });
         let certified = least > contact_distance * CERTIFIED_GAP as f32;
-        (least < contact_distance * range).then_some(Self {
+        (contact_distance > 0.0 && least < contact_distance * range).then_some(Self {
             thickness: contact_distance,
             rest_limited: contact_distance < thickness,
             certified,

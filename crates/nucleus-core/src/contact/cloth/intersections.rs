@@ -65,8 +65,7 @@ impl<R: Real> IntersectionSearch<'_, R> {
             for &face in faces.iter().filter(|face| has_full_strength(*face)) {
                 let is_joined =
                     face.iter().any(|point| edge.contains(point)) || self.filter.excludes(&edge, &face);
-                let is_new = || !self.filter.tears() || !self.coincide_at_rest(edge, face);
-                if !is_joined && pierces(edge.map(position), face.map(position)) && is_new() {
+                if !is_joined && pierces(edge.map(position), face.map(position)) {
                     found.push(Intersection {
                         edge,
                         wings: [edge[0]; 2],
@@ -76,14 +75,6 @@ impl<R: Real> IntersectionSearch<'_, R> {
                 }
             }
         }
-    }
-
-    /// Whether an edge and a face have points in one place at rest: torn from each other, they have no side to be on.
-    fn coincide_at_rest(&self, edge: [u32; 2], face: [u32; 3]) -> bool {
-        let (rest, cloth) = (&self.elements.rest_positions, &self.elements.cloth);
-        let coincide =
-            |a: u32, b: u32| cloth[a as usize] == cloth[b as usize] && rest[a as usize] == rest[b as usize];
-        edge.iter().any(|&a| face.iter().any(|&b| coincide(a, b)))
     }
 
     /// Chooses corrections between two cloths: the first belongs on the side of the second where most of it is.

@@ -1,6 +1,7 @@
 //! Broad-phase query of one element group against others: tests rows of swept boxes, then creates contacts.
 
 use crate::contact::box_row::BoxRow;
+use crate::contact::ccd::CERTIFIED_GAP;
 use crate::contact::cloth::contact::{Candidate, ContactKind, ContactParams};
 use crate::contact::cloth::element_bounds::ContactDistance;
 use crate::contact::cloth::elements::NewBounds;
@@ -9,9 +10,10 @@ use crate::contact::cloth::new_elements::{NewElement, NewElements, NewRow};
 use crate::contact::cloth::normals::set_normals;
 use crate::contact::cloth::search::{ClothSearch, SearchInput, SearchedGroup};
 use crate::contact::cloth::swept_points::ElementPoints;
-use crate::contact::material::ContactMaterial;
+use crate::contact::material::{ContactMaterial, MIN_THICKNESS};
+use crate::contact::narrow_phase::shortest_line;
 use crate::input::frame::Elements;
-use crate::math::Real;
+use crate::math::{Real, add};
 
 impl<R: Real> ClothPair<'_, R> {
     /// Finds all overlapping boxes of a group's elements that have new bounds with the elements of another group. Where both
@@ -201,6 +203,21 @@ impl<'a, R: Real> ClothPair<'a, R> {
         })
     }
 
+    /// The contact distance in metres of two elements that coincide at rest and may have been torn from each other: their
+    /// distance at the start of the step, so that they can part and not pass. Zero where they touch: what intersects is
+    /// untangled.
+    #[cold]
+    fn torn_distance<const N: usize, const M: usize>(&self, (ours, theirs): ElementPoints<N, M>) -> f32 {
+        let SearchInput { filter, anchors, displacement: [start, _], .. } = self.search.input;
+        if !filter.tears() || filter.are_joined(&ours, &theirs) {
+            return 0.0;
+        }
+        let place = |point: u32| add(anchors[point as usize], start[point as usize].xyz().map(R::to_f64));
+        let (_, _, distance) = shortest_line((ours.map(place), theirs.map(place)));
+        let is_apart = distance > MIN_THICKNESS * CERTIFIED_GAP;
+        if is_apart { distance.max(MIN_THICKNESS) as f32 } else { 0.0 }
+    }
+
     /// The contact of two elements that stay at least `least` metres apart, if they can touch.
     #[inline]
     fn contact<const N: usize, const M: usize>(
@@ -209,7 +226,8 @@ impl<'a, R: Real> ClothPair<'a, R> {
         least: f32,
     ) -> Option<Candidate<R, N, M>> {
         let ClothSearch { input, untangling, elements, .. } = self.search;
-        let distance = ContactDistance::new(points, least, self.thickness_and_range, self.rest)?;
+        let torn = || self.torn_distance(points);
+        let distance = ContactDistance::new(points, least, self.thickness_and_range, self.rest, torn)?;
         let [ours, theirs] = [points.0[0], points.1[0]].map(|point| elements.cloth[point as usize]);
         if untangling.is_disabled(&points.0, &points.1, [ours, theirs])
             || input.filter.excludes(&points.0, &points.1)
