@@ -317,6 +317,7 @@ mod tests {
             name: name.to_owned(),
             kind,
             points: 3,
+            mesh_points: 3,
             faces: Faces::default(),
             radius: None,
             surface: [0.1, 1.0],

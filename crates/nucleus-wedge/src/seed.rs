@@ -50,7 +50,9 @@ pub fn displaced(mut scene: Scene, program: &Program, seed: u32) -> Scene {
         start.state().positions(id, program.units_per_metre(), &mut positions);
         let most = DISPLACEMENT * size(object, &positions);
         let mut moved = |x: f32| f64::from(x) + most * (2.0 * random.share() - 1.0);
-        let displaced = positions.iter().map(|point| point.map(&mut moved)).collect();
+        // Points that a tear may part begin in one place.
+        let displaced =
+            positions.iter().take(object.mesh_points).map(|point| point.map(&mut moved)).collect();
         let row = match object.radius {
             None => &n_base::START_POSITIONS.row,
             Some(_) => &n_particle::POSITION0.row,
@@ -85,6 +87,26 @@ mod tests {
     use super::*;
     use nucleus_graph::compile::compile;
     use nucleus_graph::scene::read_scene_text;
+
+    #[test]
+    fn a_mesh_that_can_tear_is_displaced_whole() {
+        let text = r#"Scene(time: (start: 1, end: 3, fps: 24), nodes: {
+            "n": nucleus(), "p": polyPlane(subdivisions: (2, 2)), "c": nCloth(inputMesh: "p"),
+            "t": dynamicConstraint(constraintType: tearableSurface, components: ["c"]),
+        })"#;
+        let (scene, _) = read_scene_text(text, "a.ron".as_ref()).unwrap();
+        let program = compile(&scene).unwrap();
+        let seeded = compile(&displaced(scene, &program, 1)).unwrap();
+        let places = |program: &Program| {
+            let (run, mut out): (Simulation, _) = (Simulation::new(program, 1), Vec::new());
+            run.state().positions(nucleus_core::ClothId(0), 1.0, &mut out);
+            let distinct: BTreeSet<[u32; 3]> = out.iter().map(|point| point.map(f32::to_bits)).collect();
+            (out, distinct.len())
+        };
+        let (before, after) = (places(&program), places(&seeded));
+        assert_eq!((before.0.len(), before.1, after.0.len(), after.1), (16, 9, 16, 9));
+        assert_ne!(before.0, after.0);
+    }
 
     #[test]
     fn a_seed_displaces_every_point_by_at_most_a_thousandth_of_an_edge() {

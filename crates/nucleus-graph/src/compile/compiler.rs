@@ -160,6 +160,7 @@ impl<'a> Compiler<'a> {
             name,
             kind,
             points,
+            mesh_points: points,
             faces,
             radius: None,
             surface: [0.1, 1.0],

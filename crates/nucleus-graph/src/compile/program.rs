@@ -71,6 +71,8 @@ pub struct Object {
     pub kind: ObjectKind,
     /// Count of its points.
     pub points: usize,
+    /// Count of the points of its mesh, which come first: more follow where it is split to tear.
+    pub mesh_points: usize,
     /// Its faces, constant during the run.
     pub faces: Faces,
     /// Radius of its particles in scene units; `None` for a mesh.
