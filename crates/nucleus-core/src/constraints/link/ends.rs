@@ -56,15 +56,6 @@ impl Ends {
         (0..self.count).map(of).sum()
     }
 
-    /// Moves each point by `change` times its inverse mass and its push.
-    pub fn displace<R: Real>(&self, displacement: &mut [Row4<R>], change: Vector3<f64>) {
-        for (&row, push) in self.rows[..self.count].iter().zip(self.push) {
-            let row = &mut displacement[row as usize];
-            let factor = row.0[3].to_f64() * push;
-            (0..3).for_each(|axis| row.0[axis] += R::from_f64(change[axis] * factor));
-        }
-    }
-
     /// Adds `change` per inverse mass to a column, along the link: each point by its inverse mass and its push.
     pub fn apply<R: Real>(&self, masses: impl Fn(u32) -> f64, column: &mut [Row4<R>], change: Vector3<f64>) {
         for k in 0..self.count {

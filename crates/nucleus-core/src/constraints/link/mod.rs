@@ -12,7 +12,7 @@
 //! | which points a link has, and where prescribed sides are | [`ends`] |
 //! | the state of links, and their lists | [`lists`], [`pairs`], [`combined`], [`batches`], [`sizes`] |
 //! | the start of a frame, and one pass | [`pass`], planned as [`sweep`](mod@sweep) |
-//! | links on surfaces, and sliding | [`surface`], [`topology`] |
+//! | links on surfaces, and sliding | [`surface`], [`topology`], `placed.rs`, `gradient.rs` |
 //! | broken links | [`glue`], [`tear`] |
 //! | edges that resist folding | [`fold`] |
 //! | forces, damping and drag along links | [`velocity`] |
@@ -25,9 +25,11 @@ pub mod combined;
 pub mod ends;
 pub mod fold;
 pub mod glue;
+mod gradient;
 pub mod lists;
 pub mod pairs;
 pub mod pass;
+mod placed;
 pub mod rows;
 pub mod sizes;
 pub mod surface;

@@ -5,153 +5,18 @@
 //! the tangent strength then pulls on. These rows are swept one by one in their order: a foot may move to any face of the
 //! surface, so they have no lasting colours.
 
-use nalgebra::Vector3;
-
 use crate::constraints::stretch::LinkStrength;
-use crate::contact::cloth::elements::CsrLists;
 use crate::contact::collider::ColliderState;
-use crate::contact::narrow_phase::closest_on_triangle;
-use crate::input::PointId;
 use crate::input::frame::{COUNT_PERIOD, FrameInput};
-use crate::input::links::{ConstraintFrame, LinkSide};
+use crate::input::links::ConstraintFrame;
 use crate::math::Real;
-use crate::model::{ClothModel, ColliderModel};
 use crate::state::State;
 
 use super::ends::{Ends, Prescribed, vector};
 use super::lists::{ConstraintLinks, Links, Models};
+use super::placed::{Direction, Placed};
 use super::sweep::LinkSweep;
 use super::topology::SurfaceId;
-
-type Point = Vector3<f64>;
-
-/// Steps of a walk from face to face, at most.
-const MAX_STEPS: usize = 64;
-
-/// A surface at a time of the frame. Points are numbered by rows (cloth), or as in the mesh (collider).
-struct Placed<'a, R> {
-    id: SurfaceId,
-    faces: &'a CsrLists,
-    cloths: &'a [ClothModel<R>],
-    colliders: &'a [ColliderModel],
-    state: &'a State<R>,
-    prescribed: Prescribed<'a>,
-    time: f64,
-}
-
-impl<R: Real> Placed<'_, R> {
-    fn triangle(&self, at: u32) -> [u32; 3] {
-        match self.id {
-            SurfaceId::Cloth(cloth) => self.cloths[cloth.index()].boundary.triangles[at as usize],
-            SurfaceId::Collider(collider) => self.colliders[collider.index()].boundary.triangles[at as usize],
-        }
-    }
-
-    fn position(&self, point: u32) -> Point {
-        match self.id {
-            SurfaceId::Cloth(_) => Point::from(self.state.position(point)),
-            SurfaceId::Collider(collider) => {
-                self.prescribed.colliders[collider.index()].point(point, self.time)
-            }
-        }
-    }
-
-    fn first(&self) -> u32 {
-        match self.id {
-            SurfaceId::Cloth(cloth) => self.cloths[cloth.index()].points().start,
-            SurfaceId::Collider(_) => 0,
-        }
-    }
-
-    /// The points of a side, as this surface numbers them, and their weights.
-    fn corners(&self, side: &LinkSide) -> ([u32; 3], [f64; 3]) {
-        match *side {
-            LinkSide::Cloth { cloth, points, weights } => {
-                (points.map(|point| self.cloths[cloth.index()].place(point.index())), weights)
-            }
-            LinkSide::Collider { points, weights, .. } => (points.map(|point| point.0), weights),
-            LinkSide::Space(_) => ([0; 3], [0.0; 3]),
-        }
-    }
-
-    fn side(&self, corners: [u32; 3], weights: [f64; 3]) -> LinkSide {
-        match self.id {
-            SurfaceId::Cloth(cloth) => {
-                let model = &self.cloths[cloth.index()];
-                let first = model.points().start;
-                let points = corners.map(|row| PointId(model.order.user((row - first) as usize) as u32));
-                LinkSide::Cloth { cloth, points, weights }
-            }
-            SurfaceId::Collider(collider) => {
-                LinkSide::Collider { collider, points: corners.map(PointId), weights }
-            }
-        }
-    }
-
-    fn at(&self, corners: [u32; 3], weights: [f64; 3]) -> Point {
-        corners.into_iter().zip(weights).map(|(corner, weight)| self.position(corner) * weight).sum()
-    }
-
-    /// The nearest place of the surface, on a walk that begins at these corners.
-    fn nearest(&self, place: Point, mut corners: [u32; 3], mut weights: [f64; 3]) -> ([u32; 3], [f64; 3]) {
-        let mut distance = (place - self.at(corners, weights)).norm_squared();
-        for _ in 0..MAX_STEPS {
-            let before = distance;
-            let around = corners;
-            for corner in around {
-                for &face in self.faces.of(corner - self.first()) {
-                    let candidate = self.triangle(face);
-                    let positions = candidate.map(|point| self.position(point));
-                    let found = closest_on_triangle(place.into(), positions.map(Into::into));
-                    let foot: Point = positions.iter().zip(found).map(|(p, weight)| p * weight).sum();
-                    let squared = (place - foot).norm_squared();
-                    if squared < distance {
-                        (distance, corners, weights) = (squared, candidate, found);
-                    }
-                }
-            }
-            if distance >= before {
-                break;
-            }
-        }
-        (corners, weights)
-    }
-
-    /// The unit normal at a place: of its face, or, where links slide, interpolated between those of the corners so that
-    /// it changes smoothly.
-    fn normal(&self, corners: [u32; 3], weights: [f64; 3], is_smooth: bool) -> Point {
-        let of_face = |corners: [u32; 3]| {
-            let [a, b, c] = corners.map(|corner| self.position(corner));
-            (b - a).cross(&(c - a))
-        };
-        let of_corner = |corner: u32| {
-            let faces = self.faces.of(corner - self.first()).iter();
-            let sum: Point = faces.map(|&face| of_face(self.triangle(face))).sum();
-            sum.try_normalize(0.0).unwrap_or_default()
-        };
-        let smooth: Point =
-            corners.into_iter().zip(weights).map(|(corner, weight)| of_corner(corner) * weight).sum();
-        smooth
-            .try_normalize(1e-6)
-            .filter(|_| is_smooth)
-            .or_else(|| of_face(corners).try_normalize(0.0))
-            .unwrap_or_default()
-    }
-}
-
-impl<R: Real> Placed<'_, R> {
-    /// The unit vector along which a sliding link keeps its rest length: the normal of the face that its foot is on, or
-    /// `beside`, the line from a foot on an edge, on the side that the rest length names.
-    fn away(&self, corners: [u32; 3], weights: [f64; 3], beside: Point, rest: f64) -> Point {
-        let normal = self.normal(corners, weights, false);
-        let is_below = beside.dot(&normal) * rest.signum() < -0.5;
-        match beside == Point::zeros() {
-            true => normal,
-            false if is_below => -beside * rest.signum(),
-            false => beside * rest.signum(),
-        }
-    }
-}
 
 impl<R: Real> ConstraintLinks<R> {
     fn placed<'a>(
@@ -218,46 +83,50 @@ impl<R: Real> ConstraintLinks<R> {
             if self.broken[at] {
                 continue;
             }
-            let (link, ends) = (self.links[at], self.surface[k].ends);
-            let Some(placed) = self.placed(at, models, state, prescribed, time) else { continue };
-            let (corners, weights) = placed.corners(&link.sides[1]);
-            let normal = match frame.slides && link.rest != 0.0 {
-                true => placed.away(corners, weights, self.surface[k].beside, link.rest),
-                false => placed.normal(corners, weights, frame.slides),
-            };
-            let d = vector(&link, &ends, state, prescribed, time);
-            let mobility = ends.mobility(&state.displacement);
-            if mobility <= 0.0 {
-                continue;
-            }
-            let along = d.dot(&normal);
-            let across = d - normal * along;
-            // A sliding point without a fixed side keeps the distance on the side where it is now.
-            let side =
-                if frame.single_sided || !frame.slides { 1.0 } else { along.signum() * link.rest.signum() };
-            let rest = link.rest * side * frame.rest_scale_at(time);
-            let pull = |strength: &LinkStrength<R>, factor: f64, c: f64| {
-                let sides = if c > 0.0 {
-                    [strength.share.above, strength.compliance.above]
-                } else {
-                    [strength.share.below, strength.compliance.below]
+            for direction in [Direction::Normal, Direction::Tangent] {
+                let Some(placed) = self.placed(at, models, state, prescribed, time) else { continue };
+                let (link, row) = (&self.links[at], &self.surface[k]);
+                let d = vector(link, &row.ends, state, prescribed, time);
+                let normal = placed.hold(link, row, frame);
+                let along = d.dot(&normal);
+                let across = d - normal * along;
+                let unit = match direction {
+                    Direction::Normal => normal,
+                    Direction::Tangent => across.try_normalize(0.0).unwrap_or_default(),
                 };
-                let [share, compliance] = sides.map(R::to_f64);
-                let softened = softness(factor) * mobility + compliance;
-                if softened > 0.0 { share * factor * c / softened } else { 0.0 }
-            };
-            let mut lambda = pull(&sweep.normal, link.strength, along - rest);
-            if let Some(keep_off) = frame.keep_off {
-                // Beyond the spring: on its side, a point stays outside of the kept distance.
-                let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
-                let after = (along - lambda * mobility) * sign;
-                lambda -= sign * (keep_off - after).max(0.0) / mobility;
+                let gradient = placed.gradient(link, row, direction, [d, normal, unit]);
+                let mobility = gradient.mobility(&state.displacement);
+                if mobility <= 0.0 {
+                    continue;
+                }
+                let pull = |strength: &LinkStrength<R>, factor: f64, c: f64| {
+                    let sides = if c > 0.0 {
+                        [strength.share.above, strength.compliance.above]
+                    } else {
+                        [strength.share.below, strength.compliance.below]
+                    };
+                    let [share, compliance] = sides.map(R::to_f64);
+                    let softened = softness(factor) * mobility + compliance;
+                    if softened > 0.0 { share * factor * c / softened } else { 0.0 }
+                };
+                let lambda = match direction {
+                    Direction::Tangent => pull(&sweep.tangent, link.tangent_strength, across.norm()),
+                    Direction::Normal => {
+                        // A sliding point without a fixed side keeps the distance on the side where it is now.
+                        let is_sided = frame.single_sided || !frame.slides;
+                        let side = if is_sided { 1.0 } else { along.signum() * link.rest.signum() };
+                        let rest = link.rest * side * frame.rest_scale_at(time);
+                        let lambda = pull(&sweep.normal, link.strength, along - rest);
+                        // Beyond the spring: on its side, a point stays outside of the kept distance.
+                        let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
+                        let after = (along - lambda * mobility) * sign;
+                        let short = frame.keep_off.map_or(0.0, |keep_off| (keep_off - after).max(0.0));
+                        lambda - sign * short / mobility
+                    }
+                };
+                gradient.displace(&mut state.displacement, -lambda);
+                self.surface[k].impulse += unit * (lambda / h);
             }
-            let tangent = pull(&sweep.tangent, link.tangent_strength, across.norm());
-            let across = across.try_normalize(0.0).unwrap_or_default();
-            let push = normal * lambda + across * tangent;
-            ends.displace(&mut state.displacement, -push);
-            self.surface[k].impulse += push / h;
         }
     }
 }

@@ -297,7 +297,8 @@ impl Forming<'_> {
         let Some((surface, others)) = self.source.members.split_first() else { return Vec::new() };
         let faces = self.all_corners(surface);
         let nearby = Nearby::new(faces.iter().map(Vec::as_slice));
-        let sheet = (!surface.sheet.is_empty()).then(|| Sheet::new(surface, self.places));
+        let walks = self.values.slides() && !surface.sheet.is_empty();
+        let sheet = walks.then(|| Sheet::new(surface, self.places));
         let mut links = Vec::new();
         for member in others {
             for (point, element) in member.points() {

@@ -224,7 +224,7 @@ impl Compiler<'_> {
             };
             let is_surface = surfaces && members.is_empty();
             if let Some(mut member) = self.member([constraint, plug.node, object], target, is_surface) {
-                if is_surface && kind == kinds::SLIDE_ON_SURFACE {
+                if is_surface {
                     member.sheet = self.sheet_of(&member);
                 }
                 members.push(member);

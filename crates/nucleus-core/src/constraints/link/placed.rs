@@ -1,0 +1,181 @@
+//! The surface of a link at a time of the frame: its nearest place, its normal, and the gradient of a link on it.
+
+use nalgebra::Vector3;
+
+use crate::contact::cloth::elements::CsrLists;
+use crate::contact::narrow_phase::closest_on_triangle;
+use crate::input::PointId;
+use crate::input::links::{ConstraintFrame, Link, LinkSide};
+use crate::math::Real;
+use crate::model::{ClothModel, ColliderModel};
+use crate::state::State;
+
+use super::ends::Prescribed;
+use super::gradient::{Gradient, barycentric_gradients};
+use super::topology::{SurfaceId, SurfaceRow};
+
+type Point = Vector3<f64>;
+
+/// Along which direction a link on a surface is projected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Direction {
+    Normal,
+    Tangent,
+}
+
+/// Steps of a walk from face to face, at most.
+const MAX_STEPS: usize = 64;
+
+/// A surface at a time of the frame. Points are numbered by rows (cloth), or as in the mesh (collider).
+pub(super) struct Placed<'a, R> {
+    pub(super) id: SurfaceId,
+    pub(super) faces: &'a CsrLists,
+    pub(super) cloths: &'a [ClothModel<R>],
+    pub(super) colliders: &'a [ColliderModel],
+    pub(super) state: &'a State<R>,
+    pub(super) prescribed: Prescribed<'a>,
+    pub(super) time: f64,
+}
+
+impl<R: Real> Placed<'_, R> {
+    fn triangle(&self, at: u32) -> [u32; 3] {
+        match self.id {
+            SurfaceId::Cloth(cloth) => self.cloths[cloth.index()].boundary.triangles[at as usize],
+            SurfaceId::Collider(collider) => self.colliders[collider.index()].boundary.triangles[at as usize],
+        }
+    }
+
+    fn position(&self, point: u32) -> Point {
+        match self.id {
+            SurfaceId::Cloth(_) => Point::from(self.state.position(point)),
+            SurfaceId::Collider(collider) => {
+                self.prescribed.colliders[collider.index()].point(point, self.time)
+            }
+        }
+    }
+
+    fn first(&self) -> u32 {
+        match self.id {
+            SurfaceId::Cloth(cloth) => self.cloths[cloth.index()].points().start,
+            SurfaceId::Collider(_) => 0,
+        }
+    }
+
+    /// The points of a side, as this surface numbers them, and their weights.
+    pub(super) fn corners(&self, side: &LinkSide) -> ([u32; 3], [f64; 3]) {
+        match *side {
+            LinkSide::Cloth { cloth, points, weights } => {
+                (points.map(|point| self.cloths[cloth.index()].place(point.index())), weights)
+            }
+            LinkSide::Collider { points, weights, .. } => (points.map(|point| point.0), weights),
+            LinkSide::Space(_) => ([0; 3], [0.0; 3]),
+        }
+    }
+
+    pub(super) fn side(&self, corners: [u32; 3], weights: [f64; 3]) -> LinkSide {
+        match self.id {
+            SurfaceId::Cloth(cloth) => {
+                let model = &self.cloths[cloth.index()];
+                let first = model.points().start;
+                let points = corners.map(|row| PointId(model.order.user((row - first) as usize) as u32));
+                LinkSide::Cloth { cloth, points, weights }
+            }
+            SurfaceId::Collider(collider) => {
+                LinkSide::Collider { collider, points: corners.map(PointId), weights }
+            }
+        }
+    }
+
+    pub(super) fn at(&self, corners: [u32; 3], weights: [f64; 3]) -> Point {
+        corners.into_iter().zip(weights).map(|(corner, weight)| self.position(corner) * weight).sum()
+    }
+
+    /// The nearest place of the surface, on a walk that begins at these corners.
+    pub(super) fn nearest(
+        &self,
+        place: Point,
+        mut corners: [u32; 3],
+        mut weights: [f64; 3],
+    ) -> ([u32; 3], [f64; 3]) {
+        let mut distance = (place - self.at(corners, weights)).norm_squared();
+        for _ in 0..MAX_STEPS {
+            let before = distance;
+            let around = corners;
+            for corner in around {
+                for &face in self.faces.of(corner - self.first()) {
+                    let candidate = self.triangle(face);
+                    let positions = candidate.map(|point| self.position(point));
+                    let found = closest_on_triangle(place.into(), positions.map(Into::into));
+                    let foot: Point = positions.iter().zip(found).map(|(p, weight)| p * weight).sum();
+                    let squared = (place - foot).norm_squared();
+                    if squared < distance {
+                        (distance, corners, weights) = (squared, candidate, found);
+                    }
+                }
+            }
+            if distance >= before {
+                break;
+            }
+        }
+        (corners, weights)
+    }
+
+    /// The unit normal at a place: of its face, or, where links slide, interpolated between those of the corners so that
+    /// it changes smoothly.
+    fn normal(&self, corners: [u32; 3], weights: [f64; 3], is_smooth: bool) -> Point {
+        let of_face = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|corner| self.position(corner));
+            (b - a).cross(&(c - a))
+        };
+        let of_corner = |corner: u32| {
+            let faces = self.faces.of(corner - self.first()).iter();
+            let sum: Point = faces.map(|&face| of_face(self.triangle(face))).sum();
+            sum.try_normalize(0.0).unwrap_or_default()
+        };
+        let smooth: Point =
+            corners.into_iter().zip(weights).map(|(corner, weight)| of_corner(corner) * weight).sum();
+        smooth
+            .try_normalize(1e-6)
+            .filter(|_| is_smooth)
+            .or_else(|| of_face(corners).try_normalize(0.0))
+            .unwrap_or_default()
+    }
+}
+
+impl<R: Real> Placed<'_, R> {
+    /// The unit vector along which a link keeps its rest length: the normal, or of a sliding link beside its face the line
+    /// from its foot on an edge, where it has no side.
+    pub(super) fn hold(&self, link: &Link, row: &SurfaceRow, frame: &ConstraintFrame) -> Point {
+        let (corners, weights) = self.corners(&link.sides[1]);
+        // The normal between corners has no foot at a distance.
+        let normal = self.normal(corners, weights, frame.slides && link.rest == 0.0);
+        match row.beside == Point::zeros() || link.rest == 0.0 {
+            true => normal,
+            false => row.beside * link.rest.signum(),
+        }
+    }
+
+    /// The gradient of d·`unit`, with the tilt of the face where that is cloth.
+    pub(super) fn gradient(
+        &self,
+        link: &Link,
+        row: &SurfaceRow,
+        direction: Direction,
+        [d, normal, unit]: [Point; 3],
+    ) -> Gradient {
+        let mut gradient = Gradient::along(&row.ends, unit);
+        let tilts = matches!(self.id, SurfaceId::Cloth(_)) && row.beside == Point::zeros();
+        if tilts {
+            let (corners, _) = self.corners(&link.sides[1]);
+            let gradients = barycentric_gradients(corners.map(|corner| self.position(corner)));
+            for (corner, of) in corners.into_iter().zip(gradients) {
+                let change = match direction {
+                    Direction::Normal => -of.dot(&d),
+                    Direction::Tangent => of.dot(&unit) * d.dot(&normal),
+                };
+                gradient.add(corner, normal * change, link.weight[0]);
+            }
+        }
+        gradient
+    }
+}
