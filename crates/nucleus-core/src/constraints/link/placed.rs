@@ -143,15 +143,17 @@ impl<R: Real> Placed<'_, R> {
 }
 
 impl<R: Real> Placed<'_, R> {
-    /// The unit vector along which a link keeps its rest length: the normal, or of a sliding link beside its face the line
-    /// from its foot on an edge, where it has no side.
-    pub(super) fn hold(&self, link: &Link, row: &SurfaceRow, frame: &ConstraintFrame) -> Point {
+    /// The unit vector along which a link with the distance vector `d` keeps its rest length: the normal, or of a sliding
+    /// link beside its face the line from its foot on an edge, where it has no side. An edge of cloth takes up no torque:
+    /// there the line is `d`, and friction does not act.
+    pub(super) fn hold(&self, link: &Link, row: &SurfaceRow, frame: &ConstraintFrame, d: Point) -> Point {
         let (corners, weights) = self.corners(&link.sides[1]);
         // The normal between corners has no foot at a distance.
         let normal = self.normal(corners, weights, frame.slides && link.rest == 0.0);
-        match row.beside == Point::zeros() || link.rest == 0.0 {
-            true => normal,
-            false => row.beside * link.rest.signum(),
+        match (row.beside.filter(|_| link.rest != 0.0), self.id) {
+            (None, _) => normal,
+            (Some(line), SurfaceId::Collider(_)) => line * link.rest.signum(),
+            (Some(_), SurfaceId::Cloth(_)) => d.try_normalize(0.0).unwrap_or(normal) * link.rest.signum(),
         }
     }
 
@@ -164,7 +166,7 @@ impl<R: Real> Placed<'_, R> {
         [d, normal, unit]: [Point; 3],
     ) -> Gradient {
         let mut gradient = Gradient::along(&row.ends, unit);
-        let tilts = matches!(self.id, SurfaceId::Cloth(_)) && row.beside == Point::zeros();
+        let tilts = matches!(self.id, SurfaceId::Cloth(_)) && row.beside.is_none();
         if tilts {
             let (corners, _) = self.corners(&link.sides[1]);
             let gradients = barycentric_gradients(corners.map(|corner| self.position(corner)));

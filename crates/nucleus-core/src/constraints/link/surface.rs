@@ -52,7 +52,7 @@ impl<R: Real> ConstraintLinks<R> {
                 let mut nearest = placed.nearest(place, corners, weights);
                 let is_on_edge = nearest.1.iter().any(|weight| *weight <= 0.0);
                 let line = place - placed.at(nearest.0, nearest.1);
-                let beside = line.try_normalize(0.0).filter(|_| is_on_edge).unwrap_or_default();
+                let beside = line.try_normalize(0.0).filter(|_| is_on_edge);
                 if share < 1.0 {
                     let lagging = foot + (placed.at(nearest.0, nearest.1) - foot) * share;
                     nearest = placed.nearest(lagging, corners, weights);
@@ -83,11 +83,14 @@ impl<R: Real> ConstraintLinks<R> {
             if self.broken[at] {
                 continue;
             }
-            for direction in [Direction::Normal, Direction::Tangent] {
+            // Without friction a foot slides freely: what pulls it along the surface is the lag of friction alone.
+            let is_held_along = !frame.slides || frame.friction > 0.0;
+            let directions = [Direction::Normal, Direction::Tangent];
+            for direction in directions.into_iter().take(1 + usize::from(is_held_along)) {
                 let Some(placed) = self.placed(at, models, state, prescribed, time) else { continue };
                 let (link, row) = (&self.links[at], &self.surface[k]);
                 let d = vector(link, &row.ends, state, prescribed, time);
-                let normal = placed.hold(link, row, frame);
+                let normal = placed.hold(link, row, frame, d);
                 let along = d.dot(&normal);
                 let across = d - normal * along;
                 let unit = match direction {

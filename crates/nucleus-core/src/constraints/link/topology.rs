@@ -19,8 +19,8 @@ pub struct SurfaceRow {
     pub link: u32,
     /// Its free points; those of the foot change where it slides.
     pub ends: Ends,
-    /// Direction from the foot of a sliding link that lies on an edge, to a place beside the faces; else zero.
-    pub beside: Point,
+    /// Direction from the foot of a sliding link to the place, where that is beside the faces and the foot on an edge.
+    pub beside: Option<Point>,
     /// Impulse since the start of the substep in N·s.
     pub impulse: Point,
 }
@@ -28,7 +28,7 @@ pub struct SurfaceRow {
 impl SurfaceRow {
     /// The row of a link.
     pub fn new(link: u32, ends: Ends) -> Self {
-        Self { link, ends, beside: Point::zeros(), impulse: Point::zeros() }
+        Self { link, ends, beside: None, impulse: Point::zeros() }
     }
 }
 
