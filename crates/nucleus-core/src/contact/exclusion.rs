@@ -31,10 +31,9 @@ pub fn update_pair_filter<R: Real>(
         }
     }
     // What was welded and excluded until now may intersect.
-    if let Some(cloth_contacts) = &mut contact.cloth_contacts {
-        for (cloth, model) in model.cloths.iter().enumerate() {
-            let differs = model.points().any(|row| contact.pair_filter.differs_at(&before, row as usize));
-            cloth_contacts.untangling.is_search_due[cloth] |= links_changed && differs;
+    if let Some(cloth_contacts) = contact.cloth_contacts.as_mut().filter(|_| links_changed) {
+        for (is_due, model) in cloth_contacts.untangling.is_search_due.iter_mut().zip(&model.cloths) {
+            *is_due |= model.points().any(|row| contact.pair_filter.differs_at(&before, row as usize));
         }
     }
 }

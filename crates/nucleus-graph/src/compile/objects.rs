@@ -112,7 +112,9 @@ impl Compiler<'_> {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));
                 self.add_object(id, kind, points, faces, kilograms);
-                self.objects.iter_mut().last().into_iter().for_each(|object| object.mesh_points = given);
+                if let Some(object) = self.objects.last_mut() {
+                    object.mesh_points = given;
+                }
             }
             Err(error) => return self.report_refused(id, mesh, &error),
         }

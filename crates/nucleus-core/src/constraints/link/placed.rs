@@ -120,8 +120,8 @@ impl<R: Real> Placed<'_, R> {
         (corners, weights)
     }
 
-    /// The unit normal at a place: of its face, or, where links slide, interpolated between those of the corners so that
-    /// it changes smoothly.
+    /// The unit normal at a place: of its face, or interpolated between those of the corners, so that it changes smoothly
+    /// where links slide on the surface itself.
     fn normal(&self, corners: [u32; 3], weights: [f64; 3], is_smooth: bool) -> Point {
         let of_face = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|corner| self.position(corner));
@@ -148,7 +148,7 @@ impl<R: Real> Placed<'_, R> {
     /// there the line is `d`, and friction does not act.
     pub(super) fn hold(&self, link: &Link, row: &SurfaceRow, frame: &ConstraintFrame, d: Point) -> Point {
         let (corners, weights) = self.corners(&link.sides[1]);
-        // The normal between corners has no foot at a distance.
+        // At a distance, a place above a face is not along the normal between corners.
         let normal = self.normal(corners, weights, frame.slides && link.rest == 0.0);
         match (row.beside.filter(|_| link.rest != 0.0), self.id) {
             (None, _) => normal,
