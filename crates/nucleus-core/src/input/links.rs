@@ -159,7 +159,8 @@ impl Falloff {
 /// The attributes of one constraint in one frame. The constraints of all frames have the same order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstraintFrame {
-    /// Links formed at the start of this frame, which replace those before; `None` keeps them.
+    /// Links formed at the start of this frame, which replace those before; `None` keeps them. A link between the same
+    /// points as a broken one stays broken while `glue_strength` is below 1.
     pub formed: Option<Vec<Link>>,
     /// How they hold.
     pub method: LinkMethod,

@@ -126,6 +126,27 @@ fn broken_links_heal_when_nothing_can_break_them() {
     assert!(run(&mut solver, &mut input, 12).max_weld_gap < 1e-4);
 }
 
+#[test]
+fn broken_links_that_are_formed_anew_in_every_frame_stay_broken() {
+    let (upper, builder, constraint) = hung_sheets(6, LinkMethod::Weld);
+    let formed = constraint.formed.clone();
+    let weak = ConstraintFrame { can_break: true, glue_strength: 0.01, ..constraint };
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let mut input = tied(2, PHYSICAL, weak);
+    input.pins = pins(&upper, 0..6);
+    assert_eq!(run(&mut solver, &mut input, 4).broken_links, 6);
+    let gap = |solver: &Solver<f64>| (solver.point(ClothId(0), 30) - solver.point(ClothId(1), 0)).norm();
+    let apart = gap(&solver);
+    for _ in 0..4 {
+        input.constraints[0].formed.clone_from(&formed);
+        assert_eq!(run(&mut solver, &mut input, 1).broken_links, 6);
+    }
+    assert!(gap(&solver) > 1.5 * apart, "the lower sheet goes on falling");
+    input.constraints[0].glue_strength = 1.0;
+    input.constraints[0].formed = formed;
+    assert_eq!(run(&mut solver, &mut input, 1).broken_links, 0);
+}
+
 /// Momentum and angular momentum of free points of one kilogram.
 fn momenta(solver: &Solver<f64>, counts: &[usize]) -> [Vec3; 2] {
     let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());

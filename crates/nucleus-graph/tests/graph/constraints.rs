@@ -219,6 +219,24 @@ fn a_tearable_sheet_has_the_mass_of_the_whole_one_and_holds_until_it_is_pulled()
     assert!(most.fold(0.0, f32::max) < 1e-4, "nothing pulls");
 }
 
+// Broken springs that were joined anew in every frame pulled the pieces back from wherever they were.
+#[test]
+fn a_torn_sheet_whose_connections_update_per_frame_falls_like_a_torn_sheet() {
+    for method in ["weld", "spring", "rubberBand"] {
+        let nodes = format!(
+            r#""n": nucleus(), "p": polyPlane(subdivisions: (6, 6)), "c": nCloth(inputMesh: "p", selfCollide: false),
+            "pin": dynamicConstraint(type: transform, components: ["c.vtx[0:3]"]),
+            "t": dynamicConstraint(type: tearableSurface, components: ["c"], constraintMethod: {method},
+                connectionUpdate: 1)"#
+        );
+        let program = program(&of_nodes(&nodes, ""));
+        let farthest =
+            |frame| places(&program, frame, "c").iter().flatten().fold(0.0, |m: f32, x| m.max(x.abs()));
+        let most = [6, 12, 18, 23].map(farthest).into_iter().fold(0.0, f32::max);
+        assert!(most < 5.0, "{method}: {most} m, and a free fall is less than 5 m");
+    }
+}
+
 #[test]
 fn particles_that_slide_on_a_face_keep_their_distance_from_the_whole_mesh() {
     // Springs give way a little; rigid links do not.

@@ -4,11 +4,14 @@
 //! of the edge that it stands for. It follows from the balance of momentum alone, so it depends on neither mesh, time step
 //! nor the solver's stiffness. At the end of a substep all links above their breaking load break at once.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector3;
 
 use crate::contact::collider::ColliderState;
+use crate::input::PointId;
 use crate::input::frame::FrameInput;
-use crate::input::links::{ConstraintFrame, Link};
+use crate::input::links::{ConstraintFrame, Link, LinkSide};
 use crate::math::Real;
 use crate::model::Model;
 use crate::state::State;
@@ -26,7 +29,29 @@ pub fn breaking_load(glue_strength: f64) -> f64 {
     }
 }
 
+/// The elements that a link joins: of each side its object and points. Links formed anew between them are the same link.
+type Joined = [Option<(bool, usize, [u32; 3])>; 2];
+
+fn joined(link: &Link) -> (bool, Joined) {
+    let of = |points: [PointId; 3]| points.map(|point| point.0);
+    let side = |side: LinkSide| match side {
+        LinkSide::Cloth { cloth, points, .. } => Some((true, cloth.index(), of(points))),
+        LinkSide::Collider { collider, points, .. } => Some((false, collider.index(), of(points))),
+        LinkSide::Space(_) => None,
+    };
+    (link.fold.is_some(), link.sides.map(side))
+}
+
 impl<R: Real> ConstraintLinks<R> {
+    /// Breaks the links that were broken `before` they were formed anew.
+    pub(super) fn keep_broken(&mut self, before: &Self) {
+        let pairs = before.links.iter().zip(&before.broken);
+        let known: BTreeSet<_> = pairs.filter(|(_, broken)| **broken).map(|(link, _)| joined(link)).collect();
+        if !known.is_empty() {
+            self.broken = self.links.iter().map(|link| known.contains(&joined(link))).collect();
+        }
+    }
+
     /// Breaks the links whose load in a substep of `length` seconds was above theirs; of the welds round a point, those
     /// along which it tears. Whether there were any.
     fn break_links(&mut self, settings: &ConstraintFrame, state: &State<R>, length: f64) -> bool {

@@ -40,7 +40,11 @@ pub fn begin_links<R: Real>(
         if let Some(formed) = &settings.formed {
             changed |= !(formed.is_empty() && own.links.is_empty());
             let models = (&model.cloths[..], &model.colliders[..]);
-            *own = ConstraintLinks::new(formed.clone(), layout, models, &links.blocks);
+            let before =
+                std::mem::replace(own, ConstraintLinks::new(formed.clone(), layout, models, &links.blocks));
+            if settings.glue_strength < 1.0 {
+                own.keep_broken(&before);
+            }
         } else if own.layout != layout {
             own.lay_out_again(layout, (&model.cloths, &model.colliders), &links.blocks);
         }
