@@ -234,7 +234,7 @@ fn solve_time_step<R: CompiledReal>(
     predict(&solver.model.cloths, &mut solver.state, now, &solver.contact.is_free, &solver.pool);
     let Solver { model, state, contact, links, .. } = solver;
     let models = (&model.cloths[..], &model.colliders[..]);
-    slide_links(links, models, state, &contact.collider_states, frame, [span.to, schedule.h]);
+    slide_links(links, models, state, &contact.collider_states, frame, span.to);
     for pass in &schedule.passes {
         observer.should_continue()?;
         apply_pass(pass, solver, now, counters, observer);

@@ -107,6 +107,19 @@ pub struct LinkStrength<R> {
     pub rest_scale: R,
 }
 
+impl<R: Real> LinkStrength<R> {
+    /// The strength of each of two sweeps in turn that together are one of this strength.
+    pub fn half(&self) -> Self {
+        let sides =
+            |Sides { above, below }: Sides<R>, of: fn(R) -> R| Sides { above: of(above), below: of(below) };
+        Self {
+            share: sides(self.share, |share| R::ONE - (R::ONE - share).sqrt()),
+            compliance: sides(self.compliance, |compliance| compliance + compliance),
+            rest_scale: self.rest_scale,
+        }
+    }
+}
+
 impl<R: Real> LinkGroup<R> {
     /// Updates the spans from the anchors. Differences are in double precision, so a cloth far from the origin is as
     /// exact as one near it.

@@ -2,6 +2,7 @@
 //! absent.
 
 use crate::constraints::damp::Damping;
+use crate::constraints::link::pass::rows_of_pass;
 use crate::constraints::link::sweep::LinkSweep;
 use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
@@ -52,9 +53,8 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     let pass = |sweep: &LinkSweep<R>| {
         let own = |pass: &&Pass| matches!(pass, Pass::Links(at) if schedule.links[*at].constraint == sweep.constraint);
         let sweeps = schedule.passes.iter().filter(own).count() as f64 * f64::from(steps);
-        let formed = frame.constraints[sweep.constraint].formed.as_ref().map(Vec::len);
-        let rows = formed.or_else(|| solver.links.constraints.get(sweep.constraint).map(|own| own.rows()));
-        PassCost { name: "links", rows: rows.unwrap_or_default(), sweeps }
+        let [rows, times] = rows_of_pass(&solver.links, &solver.model, frame, sweep.constraint);
+        PassCost { name: "links", rows, sweeps: sweeps * times as f64 }
     };
     passes.extend(schedule.links.iter().map(pass));
     let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {

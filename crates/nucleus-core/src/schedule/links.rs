@@ -41,8 +41,16 @@ pub fn link_sweep<R: Real>(frame: &FrameInput, at: usize, h: f64) -> (LinkSweep<
         }
     };
     let pulls_only = constraint.method == LinkMethod::RubberBand;
-    let [normal, tangent] =
-        [constraint.strength, constraint.tangent_strength].map(|own| strength(side(own), pulls_only));
+    let normal = strength(side(constraint.strength), pulls_only);
+    let mut tangent = side(constraint.tangent_strength);
+    if constraint.slides {
+        // Of the motion along the surface in a step, friction keeps a share; the rest loads a spring and a damper in turn.
+        let friction = constraint.friction.clamp(0.0, 1.0);
+        let kept = (1.0 - friction) * h / ((1.0 - friction) * h + friction * COUNT_PERIOD);
+        let taken = 1.0 - kept.powf(1.0 / f64::from(sweeps));
+        tangent = (tangent.0 * taken, tangent.1 * kept / (1.0 - kept).max(f64::MIN_POSITIVE));
+    }
+    let tangent = strength(tangent, pulls_only);
     let bend = strength(soft(constraint.bend_strength, BENDING_PER_RESISTANCE), false);
     (LinkSweep { constraint: at, normal, tangent, bend }, sweeps)
 }

@@ -201,6 +201,53 @@ proptest! {
     }
 }
 
+/// Kinetic energy over that at the start of six and six free points with random velocities, at the end of each of 24 frames,
+/// while rigid links hold them as they are.
+fn kinetic_energy(places: &[[f64; 6]], sides: &[([u32; 3], [f64; 2])], evaluations: f64) -> Vec<f64> {
+    let [at, speed] = [0, 3]
+        .map(|k| places.iter().map(move |p| Vec3::new(p[k], p[k + 1], p[k + 2])).collect::<Vec<Vec3>>());
+    let of = |cloth: usize| {
+        let own = 6 * cloth..6 * cloth + 6;
+        let mut object = points(&at[own.clone()]);
+        object.start.velocities = speed[own].to_vec();
+        object
+    };
+    let link = |&(corners, [a, b]): &([u32; 3], [f64; 2])| {
+        let weights = [a * b, a * (1.0 - b), 1.0 - a];
+        let foot: Vec3 = corners.iter().zip(weights).map(|(&k, weight)| at[6 + k as usize] * weight).sum();
+        let first = corners[0] ^ 1;
+        Link::new([point(0, first), place(1, corners, weights)], (at[first as usize] - foot).norm())
+    };
+    let links = sides.iter().map(link).collect();
+    let constraint =
+        ConstraintFrame { formed: Some(links), method: LinkMethod::Weld, ..ConstraintFrame::default() };
+    let mut solver: Solver<f64> = Solver::new(model([of(0), of(1)]), 1);
+    let resistance = ResistanceModel::Physical { evaluations };
+    let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(2, resistance, constraint) };
+    let start: f64 = speed.iter().map(|v| v.norm_squared() / 2.0).sum();
+    (0..24).map(|_| run(&mut solver, &mut input, 1).kinetic_energy / start).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    // More links than points have directions: swept in one order they fed on their errors.
+    #[test]
+    fn rigid_links_between_any_places_create_no_energy(
+        places in proptest::collection::vec(proptest::array::uniform6(-1.0..1.0f64), 12),
+        sides in proptest::collection::vec(
+            (proptest::array::uniform3(0u32..6), proptest::array::uniform2(0.0..1.0f64)), 1..48),
+        evaluations in prop::sample::select(vec![24.0, 96.0, 384.0]),
+    ) {
+        let distinct = |(corners, _): &([u32; 3], [f64; 2])| {
+            corners[0] != corners[1] && corners[1] != corners[2] && corners[0] != corners[2]
+        };
+        let sides: Vec<_> = sides.into_iter().filter(distinct).collect();
+        let most = kinetic_energy(&places, &sides, evaluations).into_iter().fold(0.0, f64::max);
+        prop_assert!(most < 1.001, "{most} times the energy at the start");
+    }
+}
+
 #[test]
 fn links_on_a_face_keep_the_momentum_and_angular_momentum_of_both_sides() {
     let face = [Vec3::zeros(), Vec3::x(), Vec3::z()];
@@ -575,7 +622,8 @@ fn frame_time(side: u32, links: Option<ConstraintFrame>) -> f64 {
 /// Run it with `--ignored --nocapture`: a measurement of time, so not a part of every test run.
 #[test]
 #[ignore = "measures time"]
-fn a_hundred_thousand_links_cost_at_most_one_and_a_half_times_as_many_rows_of_stretch() {
+fn a_sweep_over_a_hundred_thousand_links_costs_at_most_one_and_a_half_times_that_over_as_many_rows_of_stretch()
+ {
     const SIDE: u32 = 225;
     let spring = ConstraintFrame::default();
     let weld = ConstraintFrame { method: LinkMethod::Weld, ..spring.clone() };
@@ -591,6 +639,7 @@ fn a_hundred_thousand_links_cost_at_most_one_and_a_half_times_as_many_rows_of_st
             1e3 * rows,
             links / rows
         );
-        assert!(links / rows < 1.5, "{name}: {links} s, rows of stretch {rows} s");
+        // A grid has more than two colours, so links are swept in order and backward.
+        assert!(links / rows < 2.0 * 1.5, "{name}: {links} s, rows of stretch {rows} s");
     }
 }

@@ -9,16 +9,24 @@ use crate::parallel::thread_pool::ThreadPool;
 
 use super::rows::{NO_LINK, VectorGroup};
 
-/// Does `work` on all batches of a list that spans several cloths.
+/// Does `work` on all batches of a list that spans several cloths, in order or backward.
 pub(super) fn for_batches<G: Sync>(
     list: &RowList<G>,
     blocks: usize,
+    backward: bool,
     pool: &ThreadPool,
     work: impl Fn(RowBatch) + Sync,
 ) {
-    pool.parallel_for(blocks, |block| work(RowBatch::Interior(block)));
-    for colour in 0..list.interface_colours() {
+    let colours = list.interface_colours();
+    if !backward {
+        pool.parallel_for(blocks, |block| work(RowBatch::Interior(block)));
+    }
+    for k in 0..colours {
+        let colour = if backward { colours - 1 - k } else { k };
         pool.parallel_for(list.interface_tasks(colour), |task| work(RowBatch::Interface(colour, task)));
+    }
+    if backward {
+        pool.parallel_for(blocks, |block| work(RowBatch::Interior(block)));
     }
 }
 

@@ -72,6 +72,13 @@ impl<R: Real> CombinedLists<R> {
         sum
     }
 
+    /// The number of colours of all lists.
+    pub(super) fn colours(&self) -> usize {
+        let mut sum = 0;
+        for_each_list!(self, list => sum += list.rows.colours());
+        sum
+    }
+
     pub(super) fn sweep(
         &mut self,
         points: DisjointSlice<'_, Row4<R>>,
@@ -79,7 +86,16 @@ impl<R: Real> CombinedLists<R> {
         blocks: usize,
         pool: &ThreadPool,
     ) {
-        for_each_list!(self, list => list.sweep(points, pass, blocks, pool));
+        for k in 0..6 {
+            match if pass.backward { 5 - k } else { k } {
+                0 => self.one.sweep(points, pass, blocks, pool),
+                1 => self.two.sweep(points, pass, blocks, pool),
+                2 => self.three.sweep(points, pass, blocks, pool),
+                3 => self.four.sweep(points, pass, blocks, pool),
+                4 => self.five.sweep(points, pass, blocks, pool),
+                _ => self.six.sweep(points, pass, blocks, pool),
+            }
+        }
     }
 
     /// Updates all that depends on the anchors, on prescribed places and on the strength of the frame.
@@ -158,7 +174,7 @@ impl<R: Real, const N: usize> CombinedList<R, N> {
             return;
         }
         let loads = loads.share();
-        for_batches(rows, blocks, pool, |batch| {
+        for_batches(rows, blocks, pass.backward, pool, |batch| {
             let groups = rows.batch(batch);
             // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point; batches share no
             // group.

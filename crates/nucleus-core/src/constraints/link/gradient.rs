@@ -8,6 +8,7 @@
 use nalgebra::Vector3;
 
 use crate::math::{Real, Row4};
+use crate::state::State;
 
 use super::ends::Ends;
 
@@ -47,6 +48,15 @@ impl Gradient {
     pub(super) fn mobility<R: Real>(&self, displacement: &[Row4<R>]) -> f64 {
         let of = |k: usize| displacement[self.rows[k] as usize].0[3].to_f64() * self.of[k].dot(&self.push[k]);
         (0..self.count).map(of).sum()
+    }
+
+    /// How far the motion of the time step has changed the length.
+    pub(super) fn motion<R: Real>(&self, state: &State<R>) -> f64 {
+        let moved = |row: usize| {
+            let [end, start] = [&state.displacement, &state.start].map(|column| column[row].xyz());
+            Point::from(end.map(R::to_f64)) - Point::from(start.map(R::to_f64))
+        };
+        (0..self.count).map(|k| self.of[k].dot(&moved(self.rows[k] as usize))).sum()
     }
 
     /// Moves each point along its gradient by `change` times its inverse mass.

@@ -129,6 +129,13 @@ impl<R: Real> ConstraintLinks<R> {
         self.plain.len() + self.surface.len() + self.rows_with_factors()
     }
 
+    /// Whether a pass goes over the links in order and backward: of more than two colours. Links on surfaces have none, and
+    /// count one by one.
+    pub(super) fn is_swept_both_ways(&self) -> bool {
+        let lists = self.plain.colours() + self.pairs.rows.colours();
+        lists + self.combined.colours() + self.folds.colours() + self.surface.len() > 2
+    }
+
     /// The links that join places and are whole.
     pub(super) fn joining(&self) -> impl Iterator<Item = &Link> {
         let all = self.links.iter().zip(&self.broken);
@@ -177,20 +184,37 @@ impl<R: Real> ConstraintLinks<R> {
         pool: &ThreadPool,
     ) {
         let points = DisjointSlice::new(displacement);
+        if pass.backward {
+            self.folds.sweep(points, fold, blocks, pool);
+            self.combined.sweep(points, pass, blocks, pool);
+            self.pairs.sweep(points, pass, blocks, pool);
+            self.sweep_plain(points, pass, blocks, pool);
+        } else {
+            self.sweep_plain(points, pass, blocks, pool);
+            self.pairs.sweep(points, pass, blocks, pool);
+            self.combined.sweep(points, pass, blocks, pool);
+            self.folds.sweep(points, fold, blocks, pool);
+        }
+    }
+
+    fn sweep_plain(
+        &self,
+        points: DisjointSlice<'_, Row4<R>>,
+        pass: &LinkPass<R>,
+        blocks: usize,
+        pool: &ThreadPool,
+    ) {
         let plain = &self.plain;
         if plain.len() > 0 {
-            for_batches(plain, blocks, pool, |batch| {
+            for_batches(plain, blocks, pass.backward, pool, |batch| {
                 let groups = plain.batch(batch);
                 // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
                 #[allow(unsafe_code)]
                 unsafe {
-                    relax::<R, _, 2>(points, groups, Uniform, false, &pass.strength);
+                    relax::<R, _, 2>(points, groups, Uniform, pass.backward, &pass.strength);
                 }
             });
         }
-        self.pairs.sweep(points, pass, blocks, pool);
-        self.combined.sweep(points, pass, blocks, pool);
-        self.folds.sweep(points, fold, blocks, pool);
     }
 }
 

@@ -6,6 +6,13 @@
 //! single points are such rows with a factor and a load, and all other links are combinations of one to six points.
 //! Joined edges may resist folding: the bending vector of a hinge is such a combination too.
 //!
+//! **Stability.** A time step turns the errors y of rigid links into y' = S (2y - y₀), with those of the step before, y₀,
+//! and the product S of the projections of a pass. For an eigenvalue s of S its modes are the roots of λ² - 2sλ + s = 0.
+//! For s in [0, 1] they are at most 1 in magnitude, but for most complex s near 1 one of them is larger: the links gain
+//! energy, and more with more steps. The product of two orthogonal projections has real eigenvalues, that of three or more
+//! has not, as where many rigid links meet at a face. So links of more than two colours are swept in order and backward,
+//! which makes S symmetric in the metric of the masses.
+//!
 //! | You want to know… | Read |
 //! |---|---|
 //! | the projection of a link | [`rows`] |

@@ -127,7 +127,7 @@ impl<R: Real> PairList<R> {
             return;
         }
         let loads = loads.share();
-        for_batches(rows, blocks, pool, |batch| {
+        for_batches(rows, blocks, pass.backward, pool, |batch| {
             // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point; batches share no
             // group.
             #[allow(unsafe_code)]
@@ -168,7 +168,7 @@ impl<R: Real> Kernel<R> for PairSweep<'_, R> {
         let Self { points, groups: all, mut loads, pass } = self;
         let projection = LinkProjection::<L>::new(&pass.strength);
         let per_step = L::splat(pass.per_step);
-        for at in group_starts::<R, L>(all.len(), false) {
+        for at in group_starts::<R, L>(all.len(), pass.backward) {
             let groups = &all[at..at + L::GROUPS];
             // SAFETY: the caller's promise.
             let ends = unsafe { [0, 1].map(|end| load(points, |k| groups[k].row.ends[end])) };

@@ -4,11 +4,12 @@ use crate::constraints::link::combined::LinkFrame;
 use crate::constraints::link::ends::{Ends, Prescribed, vector};
 use crate::constraints::link::lists::{ConstraintLinks, Layout, Links};
 use crate::constraints::link::rows::LinkPass;
+use crate::constraints::link::surface::SurfacePass;
 use crate::constraints::link::sweep::LinkSweep;
 use crate::constraints::stretch::LinkStrength;
 use crate::contact::collider::ColliderState;
 use crate::input::frame::{FrameInput, ResistanceModel};
-use crate::input::links::{Link, LinkMethod};
+use crate::input::links::{ConstraintFrame, Link, LinkMethod};
 use crate::math::Real;
 use crate::model::Model;
 use crate::model::blocks::Partition;
@@ -23,16 +24,10 @@ pub fn begin_links<R: Real>(
     colliders: &[ColliderState],
     frame: &FrameInput,
 ) -> bool {
-    let is_physical = matches!(frame.resistance, ResistanceModel::Physical { .. });
     let mut changed = links.constraints.len() > frame.constraints.len();
     links.constraints.truncate(frame.constraints.len());
     for (at, settings) in frame.constraints.iter().enumerate() {
-        let layout = Layout {
-            can_break: settings.can_break,
-            is_physical,
-            is_weld: settings.method == LinkMethod::Weld,
-            drops_off: settings.dropoff.is_some(),
-        };
+        let layout = layout(settings, frame.resistance);
         if links.constraints.len() == at {
             links.constraints.push(ConstraintLinks::empty(layout));
         }
@@ -60,6 +55,34 @@ pub fn begin_links<R: Real>(
     changed
 }
 
+fn layout(settings: &ConstraintFrame, resistance: ResistanceModel) -> Layout {
+    Layout {
+        can_break: settings.can_break,
+        is_physical: matches!(resistance, ResistanceModel::Physical { .. }),
+        is_weld: settings.method == LinkMethod::Weld,
+        drops_off: settings.dropoff.is_some(),
+    }
+}
+
+/// The number of rows of a constraint in a frame, and how often a pass goes over each.
+pub fn rows_of_pass<R: Real>(
+    links: &Links<R>,
+    model: &Model<R>,
+    frame: &FrameInput,
+    at: usize,
+) -> [usize; 2] {
+    let of = |own: &ConstraintLinks<R>| [own.rows(), if own.is_swept_both_ways() { 2 } else { 1 }];
+    let settings = &frame.constraints[at];
+    let models = (&model.cloths[..], &model.colliders[..]);
+    match &settings.formed {
+        Some(formed) => {
+            let layout = layout(settings, frame.resistance);
+            of(&ConstraintLinks::new(formed.clone(), layout, models, &links.blocks))
+        }
+        None => links.constraints.get(at).map_or([0, 1], of),
+    }
+}
+
 /// The largest error of a weld at the end of the frame, in metres.
 pub fn max_weld_gap<R: Real>(
     links: &Links<R>,
@@ -84,7 +107,8 @@ pub fn max_weld_gap<R: Real>(
     most
 }
 
-/// One pass over the links of a constraint.
+/// One pass over the links of a constraint. Links of more than two colours are swept in order and backward, each with half
+/// the strength (see [`link`](super)).
 pub fn relax_links<R: Real>(
     links: &mut Links<R>,
     sweep: &LinkSweep<R>,
@@ -96,17 +120,35 @@ pub fn relax_links<R: Real>(
     let Links { constraints, blocks } = links;
     let Some(own) = constraints.get_mut(sweep.constraint) else { return };
     let settings = &frame.constraints[sweep.constraint];
-    let pass = |strength: LinkStrength<R>| LinkPass {
-        strength,
-        is_physical: own.layout.is_physical,
-        time: R::from_f64(time),
-        per_step: R::from_f64(1.0 / h),
+    let (sweep, directions) = match own.is_swept_both_ways() {
+        true => (&sweep.half(), &[false, true][..]),
+        false => (sweep, &[false][..]),
     };
     let rest_scale = R::from_f64(settings.rest_scale_at(time));
-    let passes = [pass(LinkStrength { rest_scale, ..sweep.normal }), pass(sweep.bend)];
-    own.sweep(&mut state.displacement, [&passes[0], &passes[1]], blocks.len(), pool);
-    if !own.surface.is_empty() {
-        let prescribed = Prescribed { colliders, frame: settings };
-        own.relax_surface(sweep, settings, prescribed, (&model.cloths, &model.colliders), state, [time, h]);
+    let is_physical = own.layout.is_physical;
+    let surface = SurfacePass {
+        sweep,
+        prescribed: Prescribed { colliders, frame: settings },
+        models: (&model.cloths, &model.colliders),
+        from: time - h / frame.duration,
+        time,
+        h,
+    };
+    for &backward in directions {
+        let pass = |strength: LinkStrength<R>| LinkPass {
+            strength,
+            is_physical,
+            time: R::from_f64(time),
+            per_step: R::from_f64(1.0 / h),
+            backward,
+        };
+        let passes = [pass(LinkStrength { rest_scale, ..sweep.normal }), pass(sweep.bend)];
+        if backward {
+            own.relax_surface(&surface, state, backward);
+        }
+        own.sweep(&mut state.displacement, [&passes[0], &passes[1]], blocks.len(), pool);
+        if !backward {
+            own.relax_surface(&surface, state, backward);
+        }
     }
 }

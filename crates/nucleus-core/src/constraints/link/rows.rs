@@ -95,6 +95,8 @@ pub struct LinkPass<R> {
     pub time: R,
     /// 1 / h in 1/s.
     pub per_step: R,
+    /// Whether rows are swept from the last to the first.
+    pub backward: bool,
 }
 
 /// Sweeps the links of `groups` once, and adds their impulses to `impulses` where there are any, one entry per group.
@@ -115,7 +117,9 @@ pub unsafe fn relax<R: Real, const N: usize>(
     let (share_above, share_below) = (splat(share.above), splat(share.below));
     let (compliance_above, compliance_below) = (splat(compliance.above), splat(compliance.below));
     let (rest_scale, time, per_step) = (splat(rest_scale), splat(pass.time), splat(pass.per_step));
-    for (at, group) in groups.iter().enumerate() {
+    for k in 0..groups.len() {
+        let at = if pass.backward { groups.len() - 1 - k } else { k };
+        let group = &groups[at];
         let mut x = [[zero; 4]; N];
         let mut d: [R::Lanes; 3] = std::array::from_fn(|axis| {
             R::Lanes::from_array(group.span[axis]) + R::Lanes::from_array(group.travel[axis]) * time

@@ -1,13 +1,14 @@
 //! Links on surfaces: a place and a face, held along the face's normal and along the face with strengths of their own.
 //!
 //! A sliding link moves its foot, the place on the face, to the nearest place of the surface in every time step. It walks
-//! from face to neighbouring face and so stays on the sheet where it began. Friction leaves the foot behind by a lag, which
-//! the tangent strength then pulls on. These rows are swept one by one in their order: a foot may move to any face of the
-//! surface, so they have no lasting colours.
+//! from face to neighbouring face and so stays on the sheet where it began. Friction takes from the motion along the face
+//! in a time step, and never pulls towards a place: a foot that lagged behind and then crossed an edge of a folded face
+//! would pull with energy that nothing supplied. These rows are swept one by one in their order: a foot may move to any
+//! face of the surface, so they have no lasting colours.
 
 use crate::constraints::stretch::LinkStrength;
 use crate::contact::collider::ColliderState;
-use crate::input::frame::{COUNT_PERIOD, FrameInput};
+use crate::input::frame::FrameInput;
 use crate::input::links::ConstraintFrame;
 use crate::math::Real;
 use crate::state::State;
@@ -31,17 +32,8 @@ impl<R: Real> ConstraintLinks<R> {
         Some(Placed { id, faces: self.topology.of(id)?, cloths, colliders, state, prescribed, time })
     }
 
-    /// Moves the feet of all links to the surface below them, at a time of the frame, in a time step of `h` seconds.
-    fn slide(
-        &mut self,
-        models: Models<'_, R>,
-        state: &State<R>,
-        prescribed: Prescribed<'_>,
-        [time, h]: [f64; 2],
-    ) {
-        let friction = prescribed.frame.friction.clamp(0.0, 1.0);
-        let lag = friction * COUNT_PERIOD;
-        let share = (1.0 - friction) * h / ((1.0 - friction) * h + lag);
+    /// Moves the feet of all links to the nearest place of their surface, at a time of the frame.
+    fn slide(&mut self, models: Models<'_, R>, state: &State<R>, prescribed: Prescribed<'_>, time: f64) {
         for k in 0..self.surface.len() {
             let at = self.surface[k].link as usize;
             let moved = self.placed(at, models, state, prescribed, time).map(|placed| {
@@ -49,14 +41,10 @@ impl<R: Real> ConstraintLinks<R> {
                 let (corners, weights) = placed.corners(&link.sides[1]);
                 let foot = placed.at(corners, weights);
                 let place = foot + vector(link, &self.surface[k].ends, state, prescribed, time);
-                let mut nearest = placed.nearest(place, corners, weights);
+                let nearest = placed.nearest(place, corners, weights);
                 let is_on_edge = nearest.1.iter().any(|weight| *weight <= 0.0);
                 let line = place - placed.at(nearest.0, nearest.1);
                 let beside = line.try_normalize(0.0).filter(|_| is_on_edge);
-                if share < 1.0 {
-                    let lagging = foot + (placed.at(nearest.0, nearest.1) - foot) * share;
-                    nearest = placed.nearest(lagging, corners, weights);
-                }
                 (placed.side(nearest.0, nearest.1), beside)
             });
             if let Some((side, beside)) = moved {
@@ -67,86 +55,122 @@ impl<R: Real> ConstraintLinks<R> {
         }
     }
 
-    /// One sweep over the links on surfaces, one by one.
-    pub(super) fn relax_surface(
-        &mut self,
-        sweep: &LinkSweep<R>,
-        frame: &ConstraintFrame,
-        prescribed: Prescribed<'_>,
-        models: Models<'_, R>,
-        state: &mut State<R>,
-        [time, h]: [f64; 2],
-    ) {
-        let softness = |factor: f64| if self.layout.is_physical { factor } else { 1.0 };
-        for k in 0..self.surface.len() {
-            let at = self.surface[k].link as usize;
-            if self.broken[at] {
+    /// One sweep over the links on surfaces, one by one, in order or backward.
+    pub(super) fn relax_surface(&mut self, pass: &SurfacePass<'_, R>, state: &mut State<R>, backward: bool) {
+        let count = self.surface.len();
+        for k in (0..count).map(|k| if backward { count - 1 - k } else { k }) {
+            if self.broken[self.surface[k].link as usize] {
                 continue;
             }
-            // Without friction a foot slides freely: what pulls it along the surface is the lag of friction alone.
-            let is_held_along = !frame.slides || frame.friction > 0.0;
-            let directions = [Direction::Normal, Direction::Tangent];
-            for direction in directions.into_iter().take(1 + usize::from(is_held_along)) {
-                let Some(placed) = self.placed(at, models, state, prescribed, time) else { continue };
-                let (link, row) = (&self.links[at], &self.surface[k]);
-                let d = vector(link, &row.ends, state, prescribed, time);
-                let normal = placed.hold(link, row, frame, d);
-                let along = d.dot(&normal);
-                let across = d - normal * along;
-                let unit = match direction {
-                    Direction::Normal => normal,
-                    Direction::Tangent => across.try_normalize(0.0).unwrap_or_default(),
-                };
-                let gradient = placed.gradient(link, row, direction, [d, normal, unit]);
-                let mobility = gradient.mobility(&state.displacement);
-                if mobility <= 0.0 {
-                    continue;
-                }
-                let pull = |strength: &LinkStrength<R>, factor: f64, c: f64| {
-                    let sides = if c > 0.0 {
-                        [strength.share.above, strength.compliance.above]
-                    } else {
-                        [strength.share.below, strength.compliance.below]
-                    };
-                    let [share, compliance] = sides.map(R::to_f64);
-                    let softened = softness(factor) * mobility + compliance;
-                    if softened > 0.0 { share * factor * c / softened } else { 0.0 }
-                };
-                let lambda = match direction {
-                    Direction::Tangent => pull(&sweep.tangent, link.tangent_strength, across.norm()),
-                    Direction::Normal => {
-                        // A sliding point without a fixed side keeps the distance on the side where it is now.
-                        let is_sided = frame.single_sided || !frame.slides;
-                        let side = if is_sided { 1.0 } else { along.signum() * link.rest.signum() };
-                        let rest = link.rest * side * frame.rest_scale_at(time);
-                        let lambda = pull(&sweep.normal, link.strength, along - rest);
-                        // Beyond the spring: on its side, a point stays outside of the kept distance.
-                        let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
-                        let after = (along - lambda * mobility) * sign;
-                        let short = frame.keep_off.map_or(0.0, |keep_off| (keep_off - after).max(0.0));
-                        lambda - sign * short / mobility
-                    }
-                };
-                gradient.displace(&mut state.displacement, -lambda);
-                self.surface[k].impulse += unit * (lambda / h);
+            let directions = match (self.is_held_along(k, pass.prescribed.frame), backward) {
+                (false, _) => &[Direction::Normal][..],
+                (true, false) => &[Direction::Normal, Direction::Tangent],
+                (true, true) => &[Direction::Tangent, Direction::Normal],
+            };
+            for &direction in directions {
+                self.relax_along(k, direction, pass, state);
             }
         }
     }
+
+    /// Whether a link resists along its surface: by its tangent strength or, where it slides, by friction. An edge of cloth
+    /// takes up no torque, so there is no friction beside it.
+    fn is_held_along(&self, k: usize, frame: &ConstraintFrame) -> bool {
+        let row = &self.surface[k];
+        let surface = SurfaceId::of(&self.links[row.link as usize].sides[1]);
+        let is_on_edge_of_cloth = row.beside.is_some() && matches!(surface, Some(SurfaceId::Cloth(_)));
+        !frame.slides || frame.friction > 0.0 && !is_on_edge_of_cloth
+    }
+
+    /// Projects a link along the normal of its face or along the face.
+    fn relax_along(
+        &mut self,
+        k: usize,
+        direction: Direction,
+        pass: &SurfacePass<'_, R>,
+        state: &mut State<R>,
+    ) {
+        let SurfacePass { sweep, prescribed, models, from, time, h } = *pass;
+        let at = self.surface[k].link as usize;
+        let Some(placed) = self.placed(at, models, state, prescribed, time) else { return };
+        let (link, row, frame) = (&self.links[at], &self.surface[k], prescribed.frame);
+        let d = vector(link, &row.ends, state, prescribed, time);
+        let normal = placed.hold(link, row, frame, d);
+        let along = d.dot(&normal);
+        let unit = match direction {
+            Direction::Normal => normal,
+            Direction::Tangent => {
+                // Friction acts on the motion of this step.
+                let moved = if frame.slides { d - row.start(link, state, prescribed, from) } else { d };
+                (moved - normal * moved.dot(&normal)).try_normalize(0.0).unwrap_or_default()
+            }
+        };
+        let gradient = placed.gradient(link, row, direction, [d, normal, unit]);
+        let mobility = gradient.mobility(&state.displacement);
+        if mobility <= 0.0 {
+            return;
+        }
+        let is_physical = self.layout.is_physical;
+        let pull = |strength: &LinkStrength<R>, factor: f64, c: f64| {
+            let LinkStrength { share, compliance, .. } = strength;
+            let sides =
+                if c > 0.0 { [share.above, compliance.above] } else { [share.below, compliance.below] };
+            let [share, compliance] = sides.map(R::to_f64);
+            let softened = if is_physical { factor } else { 1.0 } * mobility + compliance;
+            if softened > 0.0 { share * factor * c / softened } else { 0.0 }
+        };
+        let lambda = match direction {
+            Direction::Tangent => {
+                let travel = prescribed.vector(link, time) - prescribed.vector(link, from);
+                let length = match frame.slides {
+                    true => (gradient.motion(state) + unit.dot(&travel)).max(0.0),
+                    false => d.dot(&unit),
+                };
+                pull(&sweep.tangent, link.tangent_strength, length)
+            }
+            Direction::Normal => {
+                // A sliding point without a fixed side keeps the distance on the side where it is now.
+                let is_sided = frame.single_sided || !frame.slides;
+                let side = if is_sided { 1.0 } else { along.signum() * link.rest.signum() };
+                let rest = link.rest * side * frame.rest_scale_at(time);
+                let lambda = pull(&sweep.normal, link.strength, along - rest);
+                // Beyond the spring: on its side, a point stays outside of the kept distance.
+                let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
+                let after = (along - lambda * mobility) * sign;
+                let short = frame.keep_off.map_or(0.0, |keep_off| (keep_off - after).max(0.0));
+                lambda - sign * short / mobility
+            }
+        };
+        gradient.displace(&mut state.displacement, -lambda);
+        self.surface[k].impulse += unit * (lambda / h);
+    }
 }
 
-/// Moves the feet of sliding links, after prediction, in a time step of `h` seconds that ends at `time`.
+/// A sweep over links on surfaces.
+pub(super) struct SurfacePass<'a, R> {
+    pub(super) sweep: &'a LinkSweep<R>,
+    pub(super) prescribed: Prescribed<'a>,
+    pub(super) models: Models<'a, R>,
+    /// Start and end of the time step, as shares of the frame.
+    pub(super) from: f64,
+    pub(super) time: f64,
+    /// Its length in seconds.
+    pub(super) h: f64,
+}
+
+/// Moves the feet of sliding links, after prediction, in a time step that ends at `time`.
 pub fn slide_links<R: Real>(
     links: &mut Links<R>,
     models: Models<'_, R>,
     state: &State<R>,
     colliders: &[ColliderState],
     frame: &FrameInput,
-    [time, h]: [f64; 2],
+    time: f64,
 ) {
     for (own, settings) in links.constraints.iter_mut().zip(&frame.constraints) {
         if settings.slides && !own.surface.is_empty() {
             let prescribed = Prescribed { colliders, frame: settings };
-            own.slide(models, state, prescribed, [time, h]);
+            own.slide(models, state, prescribed, time);
         }
     }
 }

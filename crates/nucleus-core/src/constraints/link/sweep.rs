@@ -1,6 +1,7 @@
 //! One pass over the links of a constraint, as the schedule plans it.
 
 use crate::constraints::stretch::LinkStrength;
+use crate::math::Real;
 
 /// One pass over the links of a constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,4 +14,12 @@ pub struct LinkSweep<R> {
     pub tangent: LinkStrength<R>,
     /// Of folds.
     pub bend: LinkStrength<R>,
+}
+
+impl<R: Real> LinkSweep<R> {
+    /// Each of two passes that together have this strength.
+    pub fn half(&self) -> Self {
+        let Self { constraint, normal, tangent, bend } = self;
+        Self { constraint: *constraint, normal: normal.half(), tangent: tangent.half(), bend: bend.half() }
+    }
 }
