@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 
 use crate::constraints::damp::damp;
 use crate::constraints::link::glue::break_links;
-use crate::constraints::link::pass::{begin_links, relax_links};
+use crate::constraints::link::pass::{begin_links, form_links, relax_links};
 use crate::constraints::link::surface::slide_links;
 use crate::constraints::link::velocity::{apply_link_forces, damp_links};
 use crate::constraints::liquid::{LiquidScene, LiquidSolver};
@@ -120,8 +120,9 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     }
     find_near_colliders(&solver.model, &solver.state, &mut solver.contact, frame);
     let Solver { model, state, contact, links, .. } = solver;
-    let links_changed = begin_links(links, model, state, &contact.collider_states, frame);
+    let links_changed = form_links(links, model, frame);
     update_pair_filter(contact, model, links, frame, links_changed);
+    begin_links(links, model, state, contact, frame);
     let anchors = if contact.is_free.contains(&false) { &state.anchor[..] } else { &[] };
     contact.ground.begin_frame(frame.plane.as_ref(), anchors, &contact.pair_filter);
     solver.liquids.iter_mut().for_each(LiquidSolver::begin_frame);

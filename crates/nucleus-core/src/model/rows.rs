@@ -35,8 +35,6 @@ pub struct RowList<G> {
     groups: Vec<G>,
     interior: Vec<Range<u32>>,
     interface: Vec<Range<u32>>,
-    /// The largest number of colours of a block.
-    interior_colours: usize,
     rows: usize,
 }
 
@@ -51,7 +49,7 @@ pub enum RowBatch {
 
 impl<G> Default for RowList<G> {
     fn default() -> Self {
-        Self { groups: Vec::new(), interior: Vec::new(), interface: Vec::new(), interior_colours: 0, rows: 0 }
+        Self { groups: Vec::new(), interior: Vec::new(), interface: Vec::new(), rows: 0 }
     }
 }
 
@@ -79,9 +77,7 @@ impl<G> RowList<G> {
         let mut colours = Colours::new(blocks);
         for (block, rows) in by_block.into_iter().enumerate() {
             let start = list.groups.len() as u32;
-            let by_colour = colours.sort_levels(rows);
-            list.interior_colours = list.interior_colours.max(by_colour.len());
-            for of_colour in by_colour {
+            for of_colour in colours.sort_levels(rows) {
                 list.push_groups(&of_colour, blocks.padding_point(block));
             }
             list.interior.push(start..list.groups.len() as u32);
@@ -122,11 +118,6 @@ impl<G> RowList<G> {
     /// The interior rows of a block; empty for a list without rows.
     pub fn interior(&self, block: usize) -> &[G] {
         self.interior.get(block).map_or(&[], |range| &self.groups[range.start as usize..range.end as usize])
-    }
-
-    /// The number of sets of rows that follow each other in a sweep; the rows of a set share no point.
-    pub fn colours(&self) -> usize {
-        self.interior_colours + self.interface.len()
     }
 
     /// The number of colours of the interface rows.

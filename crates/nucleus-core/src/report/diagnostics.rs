@@ -67,13 +67,7 @@ pub fn report<R: Real>(
             .as_ref()
             .map_or(0, |contacts| contacts.untangling.intersections.len() as u64),
         broken_links: solver.links.broken(),
-        max_weld_gap: max_weld_gap(
-            &solver.links,
-            &solver.model,
-            &solver.state,
-            &solver.contact.collider_states,
-            frame,
-        ),
+        max_weld_gap: max_weld_gap(&solver.links, &solver.model, &solver.state, &solver.contact, frame),
         particles: solver.state.populations.iter().map(|population| population.len() as u64).sum(),
         births: counters.births,
         deaths: counters.deaths,

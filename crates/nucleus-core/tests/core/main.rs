@@ -9,6 +9,7 @@ mod contact_locality;
 mod contact_response;
 mod features;
 mod fields;
+mod folds;
 mod free_points;
 mod invalid_input;
 mod laws;

@@ -316,6 +316,28 @@ fn a_sheet_welded_over_a_part_of_another_falls_with_it() {
     }
 }
 
+// The link and contact wanted different distances, and each undid the other in every step.
+#[test]
+fn a_sheet_welded_nearer_than_its_contact_thickness_falls_with_the_other() {
+    for kind in ["pointToSurface", "slideOnSurface"] {
+        for (method, height) in [("weld", 0.005), ("weld", 0.015), ("spring", 0.005)] {
+            let nodes = format!(
+                r#""n": nucleus(evaluations: 96), "pa": polyPlane(subdivisions: (6, 6)),
+                "pb": polyPlane(subdivisions: (3, 2), translate: (0.5, {height}, 0)),
+                "a": nCloth(inputMesh: "pa", thickness: 0.01), "b": nCloth(inputMesh: "pb", thickness: 0.01),
+                "s": dynamicConstraint(type: {kind}, components: ["b.f[*]", "a"], constraintMethod: {method})"#
+            );
+            let program = program(&of_nodes(&nodes, ""));
+            // It falls straight and keeps its shape.
+            let start = places(&program, 0, "a");
+            let end = places(&program, 23, "a");
+            let moved = |k: usize| [0, 2].map(|axis| (end[k][axis] - start[k][axis]).abs());
+            let most = (0..start.len()).flat_map(moved).fold(0.0, f32::max);
+            assert!(most < 0.1, "{kind}, {method} at {height} m: moved by {most} m beside its fall");
+        }
+    }
+}
+
 /// Two sheets, a collider and particles, none of which touch.
 const OBJECTS: &str = r#""n": nucleus(gravity: 0), "pa": polyPlane(subdivisions: (2, 2)),
     "pb": polyPlane(subdivisions: (2, 2), translate: (1.1, 0, 0)),

@@ -13,6 +13,7 @@ use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
 use super::batches::{Loads, for_batches};
+use super::contact_distance::Collisions;
 use super::ends::{Ends, Prescribed, vector};
 use super::rows::{self, CombinedGroup, CombinedRow, LinkPass, NO_LINK, broken_lanes};
 
@@ -72,13 +73,6 @@ impl<R: Real> CombinedLists<R> {
         sum
     }
 
-    /// The number of colours of all lists.
-    pub(super) fn colours(&self) -> usize {
-        let mut sum = 0;
-        for_each_list!(self, list => sum += list.rows.colours());
-        sum
-    }
-
     pub(super) fn sweep(
         &mut self,
         points: DisjointSlice<'_, Row4<R>>,
@@ -122,6 +116,7 @@ pub(super) struct LinkFrame<'a, R> {
     pub(super) prescribed: Prescribed<'a>,
     pub(super) state: &'a State<R>,
     pub(super) cloths: &'a [ClothModel<R>],
+    pub(super) collisions: Collisions<'a, R>,
 }
 
 impl<R: Real> LinkFrame<'_, R> {
@@ -201,6 +196,9 @@ impl<R: Real, const N: usize> CombinedList<R, N> {
                     group.travel[axis][lane] = R::from_f64(end[axis] - start[axis]);
                 }
                 group.factor[lane] = R::from_f64(factors[at]);
+                let joins_places = links[at].fold.is_none();
+                let kept = if joins_places { frame.collisions.distance(&links[at]) } else { 0.0 };
+                group.contact_distance[lane] = R::from_f64(kept);
             }
         }
     }

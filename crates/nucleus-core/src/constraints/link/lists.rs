@@ -53,6 +53,8 @@ pub struct ConstraintLinks<R> {
     pub(super) folds: CombinedLists<R>,
     /// Links on surfaces.
     pub(super) surface: Vec<SurfaceRow>,
+    /// Whether a pass goes over the links in order and backward: where more than two meet at a point.
+    pub(super) is_swept_both_ways: bool,
     pub(super) topology: Topology,
 }
 
@@ -81,6 +83,7 @@ impl<R: Real> ConstraintLinks<R> {
             combined: CombinedLists::default(),
             folds: CombinedLists::default(),
             surface: Vec::new(),
+            is_swept_both_ways: false,
             topology: Topology::default(),
         }
     }
@@ -95,8 +98,12 @@ impl<R: Real> ConstraintLinks<R> {
         let mut own = Self { broken: vec![false; links.len()], ..Self::empty(layout) };
         let (mut plain, mut pairs) = (Vec::new(), Vec::new());
         let (mut combined, mut folds) = (Vec::new(), Vec::new());
+        let mut joined = Vec::new();
         for (at, link) in (0..).zip(&links) {
             let ends = Ends::new(link, cloths);
+            if link.fold.is_none() {
+                joined.extend_from_slice(&ends.rows[..ends.count]);
+            }
             if link.on_surface {
                 own.surface.push(SurfaceRow::new(at, ends));
             } else if link.fold.is_some() {
@@ -112,6 +119,8 @@ impl<R: Real> ConstraintLinks<R> {
                 combined.push((at, ends));
             }
         }
+        joined.sort_unstable();
+        own.is_swept_both_ways = joined.chunk_by(|a, b| a == b).any(|links| links.len() > 2);
         own.plain = RowList::new(&plain, blocks);
         own.pairs = PairList::new(&pairs, &links, layout.can_break, blocks);
         if layout.can_break {
@@ -127,13 +136,6 @@ impl<R: Real> ConstraintLinks<R> {
     /// The number of rows.
     pub fn rows(&self) -> usize {
         self.plain.len() + self.surface.len() + self.rows_with_factors()
-    }
-
-    /// Whether a pass goes over the links in order and backward: of more than two colours. Links on surfaces have none, and
-    /// count one by one.
-    pub(super) fn is_swept_both_ways(&self) -> bool {
-        let lists = self.plain.colours() + self.pairs.rows.colours();
-        lists + self.combined.colours() + self.folds.colours() + self.surface.len() > 2
     }
 
     /// The links that join places and are whole.
@@ -172,6 +174,9 @@ impl<R: Real> ConstraintLinks<R> {
             self.pairs.begin_frame(&frame.state.anchor, &factors, self.layout.is_physical);
             self.combined.begin_frame(frame, &self.links, &factors);
             self.folds.begin_frame(frame, &self.links, &factors);
+        }
+        for row in &mut self.surface {
+            row.contact_distance = frame.collisions.distance(&self.links[row.link as usize]);
         }
     }
 

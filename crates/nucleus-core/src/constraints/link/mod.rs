@@ -9,9 +9,9 @@
 //! **Stability.** A time step turns the errors y of rigid links into y' = S (2y - y₀), with those of the step before, y₀,
 //! and the product S of the projections of a pass. For an eigenvalue s of S its modes are the roots of λ² - 2sλ + s = 0.
 //! For s in [0, 1] they are at most 1 in magnitude, but for most complex s near 1 one of them is larger: the links gain
-//! energy, and more with more steps. The product of two orthogonal projections has real eigenvalues, that of three or more
-//! has not, as where many rigid links meet at a face. So links of more than two colours are swept in order and backward,
-//! which makes S symmetric in the metric of the masses.
+//! energy, and more with more steps. Along chains of links, in any order of projections, the eigenvalues are real; where
+//! many rigid links meet at a face they are not. So where more than two links meet at a point, the constraint is swept in
+//! order and backward, which makes S symmetric in the metric of the masses.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -20,6 +20,7 @@
 //! | the state of links, and their lists | [`lists`], [`pairs`], [`combined`], [`batches`], [`sizes`] |
 //! | the start of a frame, and one pass | [`pass`], planned as [`sweep`](mod@sweep) |
 //! | links on surfaces, and sliding | [`surface`], [`topology`], `placed.rs`, `gradient.rs` |
+//! | links that are shorter than contact allows | `contact_distance.rs` |
 //! | broken links | [`glue`], [`tear`] |
 //! | edges that resist folding | [`fold`] |
 //! | forces, damping and drag along links | [`velocity`] |
@@ -29,6 +30,7 @@
 
 pub mod batches;
 pub mod combined;
+mod contact_distance;
 pub mod ends;
 pub mod fold;
 pub mod glue;

@@ -1,6 +1,7 @@
 //! The start of a frame for links, and one pass over the links of a constraint.
 
 use crate::constraints::link::combined::LinkFrame;
+use crate::constraints::link::contact_distance::Collisions;
 use crate::constraints::link::ends::{Ends, Prescribed, vector};
 use crate::constraints::link::lists::{ConstraintLinks, Layout, Links};
 use crate::constraints::link::rows::LinkPass;
@@ -8,6 +9,7 @@ use crate::constraints::link::surface::SurfacePass;
 use crate::constraints::link::sweep::LinkSweep;
 use crate::constraints::stretch::LinkStrength;
 use crate::contact::collider::ColliderState;
+use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, ResistanceModel};
 use crate::input::links::{ConstraintFrame, Link, LinkMethod};
 use crate::math::Real;
@@ -16,14 +18,8 @@ use crate::model::blocks::Partition;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
-/// Forms and heals links, and updates their rows. Whether any link is new, or whole again.
-pub fn begin_links<R: Real>(
-    links: &mut Links<R>,
-    model: &Model<R>,
-    state: &State<R>,
-    colliders: &[ColliderState],
-    frame: &FrameInput,
-) -> bool {
+/// Forms and heals links. Whether any is new, or whole again.
+pub fn form_links<R: Real>(links: &mut Links<R>, model: &Model<R>, frame: &FrameInput) -> bool {
     let mut changed = links.constraints.len() > frame.constraints.len();
     links.constraints.truncate(frame.constraints.len());
     for (at, settings) in frame.constraints.iter().enumerate() {
@@ -49,10 +45,24 @@ pub fn begin_links<R: Real>(
             changed = true;
         }
         own.glue_strength = settings.glue_strength;
-        let prescribed = Prescribed { colliders, frame: settings };
-        own.begin_frame(&LinkFrame { prescribed, state, cloths: &model.cloths });
     }
     changed
+}
+
+/// Updates the rows of all links, once the pair filter knows which of them are new.
+pub fn begin_links<R: Real>(
+    links: &mut Links<R>,
+    model: &Model<R>,
+    state: &State<R>,
+    contact: &ContactSystem<R>,
+    frame: &FrameInput,
+) {
+    let cloths = &model.cloths[..];
+    for (own, settings) in links.constraints.iter_mut().zip(&frame.constraints) {
+        let prescribed = Prescribed { colliders: &contact.collider_states, frame: settings };
+        let collisions = Collisions { frame, pair_filter: &contact.pair_filter, cloths };
+        own.begin_frame(&LinkFrame { prescribed, state, cloths, collisions });
+    }
 }
 
 fn layout(settings: &ConstraintFrame, resistance: ResistanceModel) -> Layout {
@@ -71,7 +81,7 @@ pub fn rows_of_pass<R: Real>(
     frame: &FrameInput,
     at: usize,
 ) -> [usize; 2] {
-    let of = |own: &ConstraintLinks<R>| [own.rows(), if own.is_swept_both_ways() { 2 } else { 1 }];
+    let of = |own: &ConstraintLinks<R>| [own.rows(), if own.is_swept_both_ways { 2 } else { 1 }];
     let settings = &frame.constraints[at];
     let models = (&model.cloths[..], &model.colliders[..]);
     match &settings.formed {
@@ -88,27 +98,30 @@ pub fn max_weld_gap<R: Real>(
     links: &Links<R>,
     model: &Model<R>,
     state: &State<R>,
-    colliders: &[ColliderState],
+    contact: &ContactSystem<R>,
     frame: &FrameInput,
 ) -> f64 {
+    let collisions = Collisions { frame, pair_filter: &contact.pair_filter, cloths: &model.cloths };
     let mut most = 0.0f64;
     for (own, settings) in
         links.constraints.iter().zip(&frame.constraints).filter(|(own, _)| own.layout.is_weld)
     {
-        let prescribed = Prescribed { colliders, frame: settings };
+        let prescribed = Prescribed { colliders: &contact.collider_states, frame: settings };
         let holds = |link: &Link| !link.on_surface && link.fold.is_none();
         let whole = own.links.iter().zip(&own.broken).filter(|(link, broken)| !**broken && holds(link));
         for (link, _) in whole {
             let ends = Ends::new(link, &model.cloths);
             let length = vector(link, &ends, state, prescribed, 1.0).norm();
-            most = most.max((length - link.rest * settings.rest_scale[1]).abs());
+            let rest = link.rest * settings.rest_scale[1];
+            let longest = rest.max(if ends.count > 2 { collisions.distance(link) } else { 0.0 });
+            most = most.max(rest - length).max(length - longest);
         }
     }
     most
 }
 
-/// One pass over the links of a constraint. Links of more than two colours are swept in order and backward, each with half
-/// the strength (see [`link`](super)).
+/// One pass over the links of a constraint. Where more than two meet at a point they are swept in order and backward, each
+/// time with half the strength (see [`link`](super)).
 pub fn relax_links<R: Real>(
     links: &mut Links<R>,
     sweep: &LinkSweep<R>,
@@ -120,7 +133,7 @@ pub fn relax_links<R: Real>(
     let Links { constraints, blocks } = links;
     let Some(own) = constraints.get_mut(sweep.constraint) else { return };
     let settings = &frame.constraints[sweep.constraint];
-    let (sweep, directions) = match own.is_swept_both_ways() {
+    let (sweep, directions) = match own.is_swept_both_ways {
         true => (&sweep.half(), &[false, true][..]),
         false => (sweep, &[false][..]),
     };

@@ -33,6 +33,8 @@ pub struct CombinedGroup<R, const N: usize> {
     pub travel: [[R; 4]; 3],
     /// Length at rest in metres.
     pub rest: [R; 4],
+    /// Distance that contact keeps between the sides in metres, up to which the link does not pull.
+    pub contact_distance: [R; 4],
     /// Factor on the strength; 0 for a broken link.
     pub factor: [R; 4],
     /// The link of each lane, or [`NO_LINK`].
@@ -78,6 +80,7 @@ impl<R: Real, const N: usize> Row for CombinedRow<R, N> {
             span: [[R::ZERO; 4]; 3],
             travel: [[R::ZERO; 4]; 3],
             rest: rows.map(|row| row.rest),
+            contact_distance: [R::ZERO; 4],
             factor: [R::ZERO; 4],
             link: rows.map(|row| row.link),
         }
@@ -134,7 +137,10 @@ pub unsafe fn relax<R: Real, const N: usize>(
             mobility = mobility + w * weight * R::Lanes::from_array(group.push[k]);
         }
         let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-        let c = length - R::Lanes::from_array(group.rest) * rest_scale;
+        let rest = R::Lanes::from_array(group.rest) * rest_scale;
+        let longest = rest.most(R::Lanes::from_array(group.contact_distance));
+        let c = length - rest;
+        let c = c.choose_by_sign((length - longest).most(zero), c);
         let factor = R::Lanes::from_array(group.factor);
         let softness = if pass.is_physical { factor } else { one };
         let compliance = c.choose_by_sign(compliance_above, compliance_below);

@@ -133,11 +133,15 @@ impl<R: Real> ConstraintLinks<R> {
                 let is_sided = frame.single_sided || !frame.slides;
                 let side = if is_sided { 1.0 } else { along.signum() * link.rest.signum() };
                 let rest = link.rest * side * frame.rest_scale_at(time);
-                let lambda = pull(&sweep.normal, link.strength, along - rest);
-                // Beyond the spring: on its side, a point stays outside of the kept distance.
+                let outward = if rest == 0.0 { along.signum() } else { rest.signum() };
+                let beyond = (along * outward - rest.abs().max(row.contact_distance)).max(0.0);
+                let c = if (along - rest) * outward > 0.0 { beyond * outward } else { along - rest };
+                let lambda = pull(&sweep.normal, link.strength, c);
+                // Beyond the spring: on its side, a point stays outside of the kept distance, unless it rests nearer.
                 let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
                 let after = (along - lambda * mobility) * sign;
-                let short = frame.keep_off.map_or(0.0, |keep_off| (keep_off - after).max(0.0));
+                let short =
+                    frame.keep_off.map_or(0.0, |keep_off| (keep_off.min(rest.abs()) - after).max(0.0));
                 lambda - sign * short / mobility
             }
         };

@@ -22,6 +22,8 @@ pub struct SurfaceRow {
     pub ends: Ends,
     /// Direction from the foot of a sliding link to the place, where that is beside the faces and the foot on an edge.
     pub beside: Option<Point>,
+    /// Distance that contact keeps between the sides in metres, up to which the link does not pull.
+    pub contact_distance: f64,
     /// Impulse since the start of the substep in N·s.
     pub impulse: Point,
 }
@@ -29,7 +31,7 @@ pub struct SurfaceRow {
 impl SurfaceRow {
     /// The row of a link.
     pub fn new(link: u32, ends: Ends) -> Self {
-        Self { link, ends, beside: None, impulse: Point::zeros() }
+        Self { link, ends, beside: None, contact_distance: 0.0, impulse: Point::zeros() }
     }
 
     /// The distance vector in metres at the start of the time step, which is at `time`.

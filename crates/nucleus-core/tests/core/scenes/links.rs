@@ -2,7 +2,7 @@
 
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, ConstraintFrame, FrameInput, LinkSide, Mass, ModelBuilder,
-    PointId, ResistanceModel, Solver, StepReport, Surface,
+    PointId, ResistanceModel, Solver, StateView, StepReport, Surface,
 };
 
 use super::{Vec3, frame, still};
@@ -48,4 +48,19 @@ pub fn run(solver: &mut Solver<f64>, input: &mut FrameInput, frames: usize) -> S
         input.constraints.iter_mut().for_each(|constraint| constraint.formed = None);
     }
     report
+}
+
+/// Momentum and angular momentum of free points of one kilogram.
+pub fn momenta(solver: &Solver<f64>, counts: &[usize]) -> [Vec3; 2] {
+    let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
+    for (cloth, &count) in (0..).map(ClothId).zip(counts) {
+        let mut velocities = Vec::new();
+        solver.velocities(cloth, 1.0, &mut velocities);
+        for (k, velocity) in (0..count).zip(velocities) {
+            let velocity = Vec3::from(velocity.map(f64::from));
+            linear += velocity;
+            angular += solver.point(cloth, k).cross(&velocity);
+        }
+    }
+    [linear, angular]
 }
