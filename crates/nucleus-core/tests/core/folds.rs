@@ -153,5 +153,3 @@ fn folds_continue_from_a_checkpoint_with_the_same_bits() {
     assert_eq!(solver.state_hash(), restored.state_hash());
     assert_eq!(reports[0].broken_links, reports[1].broken_links);
 }
-
-// EVIDENCE: N2.2-7  links have the same bits on any number of threads

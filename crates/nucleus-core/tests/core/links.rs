@@ -333,6 +333,7 @@ fn sliding_with_full_friction_does_not_slide() {
     assert!((solver.point(ClothId(0), 0) - Vec3::new(0.0, 0.51, 0.0)).norm() < 0.01);
 }
 
+// EVIDENCE: N2.2-7  links have the same bits on any number of threads
 #[test]
 fn links_give_the_same_bits_on_any_number_of_threads_and_after_a_restart() {
     let build = || {
