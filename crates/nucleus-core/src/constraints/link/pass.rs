@@ -93,7 +93,7 @@ pub fn rows_of_pass<R: Real>(
     }
 }
 
-/// The largest error of a weld at the end of the frame, in metres.
+/// The largest error of a weld at the end of the frame in metres, beyond the distance that contact keeps.
 pub fn max_weld_gap<R: Real>(
     links: &Links<R>,
     model: &Model<R>,
@@ -113,7 +113,7 @@ pub fn max_weld_gap<R: Real>(
             let ends = Ends::new(link, &model.cloths);
             let length = vector(link, &ends, state, prescribed, 1.0).norm();
             let rest = link.rest * settings.rest_scale[1];
-            let longest = rest.max(if ends.count > 2 { collisions.distance(link) } else { 0.0 });
+            let longest = rest.max(collisions.distance(link));
             most = most.max(rest - length).max(length - longest);
         }
     }
