@@ -75,8 +75,12 @@ def test_an_interrupt_closes_the_cache_and_ends_a_step_loop(folder):
         "run": loop + "nucleus.run('long.ron', record='frames')",
         "step": loop + "for _ in nucleus.Simulation('long.ron', threads=1): pass",
     }
+    # A job in the background ignores the signal, and its children do.
+    listen = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
     for name, program in programs.items():
-        child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        child = subprocess.Popen(
+            [sys.executable, "-c", listen + program], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        )
         child.stdout.readline()
         begin = time.monotonic()
         while name == "run" and not (folder / "long.mcap.part").exists():
