@@ -477,7 +477,7 @@ fn a_sweep_over_a_hundred_thousand_links_costs_at_most_one_and_a_half_times_that
             1e3 * rows,
             links / rows
         );
-        // A grid has more than two colours, so links are swept in order and backward.
+        // Four links meet at a point of a grid, so they are swept in order and backward.
         assert!(links / rows < 2.0 * 1.5, "{name}: {links} s, rows of stretch {rows} s");
     }
 }

@@ -196,9 +196,7 @@ impl<R: Real, const N: usize> CombinedList<R, N> {
                     group.travel[axis][lane] = R::from_f64(end[axis] - start[axis]);
                 }
                 group.factor[lane] = R::from_f64(factors[at]);
-                let joins_places = links[at].fold.is_none();
-                let kept = if joins_places { frame.collisions.distance(&links[at]) } else { 0.0 };
-                group.contact_distance[lane] = R::from_f64(kept);
+                group.contact_distance[lane] = R::from_f64(frame.collisions.distance(&links[at]));
             }
         }
     }

@@ -20,11 +20,11 @@ pub(super) struct Collisions<'a, R> {
 
 impl<R: Real> Collisions<'_, R> {
     /// The contact thickness of the two sides in metres, before vertex maps; 0 where they do not collide, between two
-    /// single points, and within a cloth, where contact keeps no more than half of the distance at rest.
+    /// single points, of a fold, and within a cloth, where contact keeps no more than half of the distance at rest.
     pub(super) fn distance(&self, link: &Link) -> f64 {
         let FrameInput { cloths, colliders, layer_range, .. } = self.frame;
         let material = match link.sides {
-            _ if link.points().is_some() => None,
+            _ if link.fold.is_some() || link.points().is_some() => None,
             [LinkSide::Cloth { cloth: a, .. }, LinkSide::Cloth { cloth: b, .. }] if a != b => {
                 let pair = [a, b].map(|cloth| &cloths[cloth.index()]);
                 ContactMaterial::<R>::for_cloths(pair, [1.0; 2], *layer_range).filter(|_| {

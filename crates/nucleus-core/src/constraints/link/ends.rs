@@ -110,3 +110,18 @@ pub fn vector<R: Real>(
 ) -> Vector3<f64> {
     ends.sum(|row| Vector3::from(state.position(row))) + prescribed.vector(link, time)
 }
+
+/// The distance vector of a link at the start of the time step, a time of the frame, in metres.
+pub fn start_vector<R: Real>(
+    link: &Link,
+    ends: &Ends,
+    state: &State<R>,
+    prescribed: Prescribed<'_>,
+    time: f64,
+) -> Vector3<f64> {
+    let start = |row: u32| {
+        let moved = state.start[row as usize].xyz().map(R::to_f64);
+        Vector3::from(state.anchor[row as usize]) + Vector3::from(moved)
+    };
+    ends.sum(start) + prescribed.vector(link, time)
+}

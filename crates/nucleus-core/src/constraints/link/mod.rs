@@ -9,9 +9,10 @@
 //! **Stability.** A time step turns the errors y of rigid links into y' = S (2y - y₀), with those of the step before, y₀,
 //! and the product S of the projections of a pass. For an eigenvalue s of S its modes are the roots of λ² - 2sλ + s = 0.
 //! For s in [0, 1] they are at most 1 in magnitude, but for most complex s near 1 one of them is larger: the links gain
-//! energy, and more with more steps. Along chains of links, in any order of projections, the eigenvalues are real; where
-//! many rigid links meet at a face they are not. So where more than two links meet at a point, the constraint is swept in
-//! order and backward, which makes S symmetric in the metric of the masses.
+//! energy, and more with more steps. Along chains of links, in any order of projections, the eigenvalues are real (orders
+//! differ by cyclic shifts), and rings of random masses do not grow either. Where many rigid links meet at a face they do.
+//! So where more than two links meet at a point, the constraint is swept in order and backward, which makes S symmetric in
+//! the metric of the masses.
 //!
 //! | You want to know… | Read |
 //! |---|---|

@@ -13,7 +13,7 @@ use crate::input::links::ConstraintFrame;
 use crate::math::Real;
 use crate::state::State;
 
-use super::ends::{Ends, Prescribed, vector};
+use super::ends::{Ends, Prescribed, start_vector, vector};
 use super::lists::{ConstraintLinks, Links, Models};
 use super::placed::{Direction, Placed};
 use super::sweep::LinkSweep;
@@ -101,7 +101,8 @@ impl<R: Real> ConstraintLinks<R> {
             Direction::Normal => normal,
             Direction::Tangent => {
                 // Friction acts on the motion of this step.
-                let moved = if frame.slides { d - row.start(link, state, prescribed, from) } else { d };
+                let moved =
+                    if frame.slides { d - start_vector(link, &row.ends, state, prescribed, from) } else { d };
                 (moved - normal * moved.dot(&normal)).try_normalize(0.0).unwrap_or_default()
             }
         };

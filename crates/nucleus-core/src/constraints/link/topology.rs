@@ -7,9 +7,8 @@ use crate::input::links::{Link, LinkSide};
 use crate::input::{ClothId, ColliderId};
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
-use crate::state::State;
 
-use super::ends::{Ends, Prescribed};
+use super::ends::Ends;
 
 type Point = Vector3<f64>;
 
@@ -32,21 +31,6 @@ impl SurfaceRow {
     /// The row of a link.
     pub fn new(link: u32, ends: Ends) -> Self {
         Self { link, ends, beside: None, contact_distance: 0.0, impulse: Point::zeros() }
-    }
-
-    /// The distance vector in metres at the start of the time step, which is at `time`.
-    pub(super) fn start<R: Real>(
-        &self,
-        link: &Link,
-        state: &State<R>,
-        prescribed: Prescribed<'_>,
-        time: f64,
-    ) -> Point {
-        let start = |row: u32| {
-            let moved = state.start[row as usize].xyz().map(R::to_f64);
-            Point::from(state.anchor[row as usize]) + Point::from(moved)
-        };
-        self.ends.sum(start) + prescribed.vector(link, time)
     }
 }
 
