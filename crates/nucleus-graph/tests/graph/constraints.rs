@@ -14,6 +14,12 @@ fn places(program: &Program, frames: usize, name: &str) -> Vec<[f32; 3]> {
     after(program, frames, name).into_iter().map(|place| place.map(f32::from_bits)).collect()
 }
 
+/// The largest coordinate of the points of an object within a second, in scene units.
+fn farthest(program: &Program, name: &str) -> f32 {
+    let at = |frame| places(program, frame, name).iter().flatten().fold(0.0, |m: f32, x| m.max(x.abs()));
+    [6, 12, 18, 24].map(at).into_iter().fold(0.0, f32::max)
+}
+
 /// The first error of a scene of these nodes, and its help.
 fn error(nodes: &str) -> (String, Option<String>) {
     let text = of_nodes(nodes, "");
@@ -230,9 +236,7 @@ fn a_torn_sheet_whose_connections_update_per_frame_falls_like_a_torn_sheet() {
                 connectionUpdate: 1)"#
         );
         let program = program(&of_nodes(&nodes, ""));
-        let farthest =
-            |frame| places(&program, frame, "c").iter().flatten().fold(0.0, |m: f32, x| m.max(x.abs()));
-        let most = [6, 12, 18, 23].map(farthest).into_iter().fold(0.0, f32::max);
+        let most = farthest(&program, "c");
         assert!(most < 5.0, "{method}: {most} m, and a free fall is less than 5 m");
     }
 }
@@ -268,9 +272,7 @@ fn a_sheet_held_from_places_far_above_its_faces_does_not_feed_on_its_turning() {
         );
         // It swings about the box within the diagonal of the sheet; before, its points flew 20 m apart.
         let program = program(&of_nodes(&nodes, ""));
-        let farthest =
-            |frame| places(&program, frame, "a").iter().flatten().fold(0.0, |m: f32, x| m.max(x.abs()));
-        let most = [6, 12, 18, 24].map(farthest).into_iter().fold(0.0, f32::max);
+        let most = farthest(&program, "a");
         assert!(most < 3.0, "{method}: {most} m");
     }
 }
@@ -288,9 +290,7 @@ fn a_particle_that_slides_beside_a_falling_sheet_does_not_feed_it() {
         );
         let program = program(&of_nodes(&nodes, ""));
         // All fall by less than 5 m in a second; the sheet flew 10 m and more.
-        let farthest =
-            |frame| places(&program, frame, "a").iter().flatten().fold(0.0, |m: f32, x| m.max(x.abs()));
-        let most = [6, 12, 18, 23].map(farthest).into_iter().fold(0.0, f32::max);
+        let most = farthest(&program, "a");
         assert!(most < 5.0, "friction {friction}: {most} m");
     }
 }
@@ -308,9 +308,7 @@ fn a_sheet_welded_over_a_part_of_another_falls_with_it() {
                     friction: {friction})"#
             );
             let program = program(&of_nodes(&nodes, ""));
-            let farthest =
-                |frame| places(&program, frame, "a").iter().flatten().fold(0.0, |m: f32, x| m.max(x.abs()));
-            let most = [6, 12, 18, 23].map(farthest).into_iter().fold(0.0, f32::max);
+            let most = farthest(&program, "a");
             assert!(most < 5.0, "{kind}, friction {friction}: {most} m, and a free fall is less than 5 m");
         }
     }
