@@ -254,20 +254,12 @@ fn rebuild<R: Real>(solver: &mut Solver<R>) {
         collider.begin_frame(&start, &end);
         collider.now = now;
     }
-    solver.contact.collider_contacts.iter_mut().for_each(sort_by_point);
     if let Some(ClothContacts { elements, .. }) = &mut solver.contact.cloth_contacts {
-        elements.refit();
+        elements.refit(&solver.pool);
     }
     let models = (&solver.model.cloths[..], &solver.model.colliders[..]);
     solver.links.rebuild(models);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
-}
-
-/// Rebuilds `by_point`.
-fn sort_by_point<R: Real>(list: &mut ColliderContacts<R>) {
-    let keys = (0..).zip(&list.point_face).map(|(index, contact)| u64::from(contact.points[0]) << 32 | index);
-    list.by_point = keys.collect();
-    list.by_point.sort_unstable();
 }
 
 /// A hash of all points, faces and masses, in the solver's order. Attributes may change from frame to frame and are no
@@ -389,7 +381,7 @@ checkpoint_struct!([R: Real] ColliderContacts<R> {
     columns: [],
     values: [interval, point_face, edge_edge, face_point, depenetration],
     parts: [],
-    rebuilt: [cloth, collider, is_near, by_point, active, tasks, unproven],
+    rebuilt: [cloth, collider, is_near, active, tasks, unproven],
 });
 
 checkpoint_struct!([R: Real] ClothContacts<R> {

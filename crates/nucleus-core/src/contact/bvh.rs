@@ -7,6 +7,8 @@ use nalgebra::Vector3;
 
 use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::model::order::by_halves;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
 
 /// An axis-aligned box in metres, relative to an origin of the caller. In single precision, rounded outwards. The
 /// fourth number is always zero, so that a box is two aligned loads.
@@ -126,6 +128,9 @@ pub type SweptBox = [Aabb; 2];
 /// Elements to a leaf.
 const LEAF_SIZE: usize = 4;
 
+/// Leaves of a task, a power of two.
+const LEAVES_PER_TASK: usize = 128;
+
 /// A bounding volume hierarchy over triangles, or over groups of elements.
 #[derive(Debug, Clone)]
 pub struct Bvh {
@@ -156,13 +161,39 @@ impl Bvh {
     }
 
     /// Sets every box from the boxes of the elements.
-    pub fn refit(&mut self, bounds: impl Fn(usize) -> Aabb) {
-        for (leaf, triangles) in self.triangles.chunks(LEAF_SIZE).enumerate() {
-            let all = triangles.iter().map(|&triangle| bounds(triangle as usize));
-            self.nodes[self.leaves - 1 + leaf] = all.fold(Aabb::EMPTY, Aabb::union);
-        }
-        for node in (0..self.leaves - 1).rev() {
-            self.nodes[node] = self.nodes[2 * node + 1].union(self.nodes[2 * node + 2]);
+    pub fn refit(&mut self, bounds: impl Fn(usize) -> Aabb + Sync) {
+        self.refit_in_tasks(bounds, &ThreadPool::new(1));
+    }
+
+    /// The same, a task for each of the lower subtrees.
+    pub fn refit_in_tasks(&mut self, bounds: impl Fn(usize) -> Aabb + Sync, pool: &ThreadPool) {
+        let Self { triangles, nodes, leaves } = self;
+        // Both are powers of two.
+        let subtrees = (*leaves / LEAVES_PER_TASK).max(1);
+        let span = *leaves / subtrees;
+        let shared = DisjointSlice::new(nodes);
+        pool.parallel_for(subtrees, |task| {
+            // SAFETY: subtrees share no node, and children are set before their parents.
+            #[allow(unsafe_code)]
+            let (get, set) = (
+                |node: usize| unsafe { shared.get(node as u32) },
+                |node: usize, bounds| unsafe {
+                    shared.set(node as u32, bounds);
+                },
+            );
+            for leaf in task * span..(task + 1) * span {
+                let own = triangles.chunks(LEAF_SIZE).nth(leaf).unwrap_or_default();
+                let all = own.iter().map(|&triangle| bounds(triangle as usize));
+                set(*leaves - 1 + leaf, all.fold(Aabb::EMPTY, Aabb::union));
+            }
+            let (mut first, mut count) = (*leaves - 1 + task * span, span);
+            while count > 1 {
+                (first, count) = ((first - 1) / 2, count / 2);
+                (first..first + count).for_each(|node| set(node, get(2 * node + 1).union(get(2 * node + 2))));
+            }
+        });
+        for node in (0..subtrees - 1).rev() {
+            nodes[node] = nodes[2 * node + 1].union(nodes[2 * node + 2]);
         }
     }
 
@@ -293,6 +324,23 @@ mod tests {
             let meets = |[l, h]: &[Vector3<f64>; 2]| (0..3).all(|k| l[k] <= high[k] + 0.5 && low[k] - 0.5 <= h[k]);
             let all = (0..corners.len()).filter(|&k| meets(&corners[k]));
             prop_assert!(all.into_iter().all(|k| found.contains(&(k as u32))));
+        }
+
+        #[test]
+        fn subtrees_fitted_in_tasks_make_the_same_hierarchy(count in 1usize..3000, seed in 0u32..100) {
+            let number = |at: usize, axis: u32| ((at as u32 * 3 + axis + seed).wrapping_mul(2654435761) >> 8) as f32 / 1e5;
+            let places: Vec<[f32; 3]> = (0..count).map(|at| [0, 1, 2].map(|axis| number(at, axis))).collect();
+            let mut bvh = Bvh::new(&places.iter().map(|place| Vector3::from(place.map(f64::from))).collect::<Vec<_>>());
+            bvh.refit_in_tasks(|at| Aabb::ball(places[at], 0.1), &ThreadPool::new(2));
+            for node in 0..bvh.leaves - 1 {
+                prop_assert_eq!(bvh.nodes[node], bvh.nodes[2 * node + 1].union(bvh.nodes[2 * node + 2]));
+            }
+            for node in bvh.leaves - 1..bvh.nodes.len() {
+                let own = (node - (bvh.leaves - 1)) * LEAF_SIZE;
+                let own = bvh.triangles.iter().skip(own).take(LEAF_SIZE);
+                let all = own.map(|&at| Aabb::ball(places[at as usize], 0.1)).fold(Aabb::EMPTY, Aabb::union);
+                prop_assert_eq!(bvh.nodes[node], all);
+            }
         }
 
         #[test]

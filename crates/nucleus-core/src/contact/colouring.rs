@@ -22,9 +22,6 @@ pub fn permute<T: Copy, K>(list: &mut [T], order: &mut [(K, u32)]) {
     }
 }
 
-/// The place of a contact in the order of the tasks: its blocks, and its former index.
-pub type Place = ([u32; 2], u32);
-
 /// Tasks by colour. Every task is a run of the contacts.
 #[derive(Debug, Clone, Default)]
 pub struct Colouring {
@@ -52,19 +49,23 @@ impl Colouring {
         self.colours.clear();
     }
 
-    /// Colours contacts that are sorted by task, given by their [`task_key`]. There are `blocks` blocks.
-    pub fn assign(&mut self, sorted_keys: impl Iterator<Item = [u32; 2]>, blocks: u32) {
+    /// Colours contacts that are sorted by task, given as pieces: the [`task_key`] and the number of contacts of each. There
+    /// are `blocks` blocks.
+    pub fn assign(&mut self, sorted_pieces: impl Iterator<Item = ([u32; 2], u32)>, blocks: u32) {
         self.tasks.clear();
         self.task_blocks.clear();
-        for (at, key) in (0..).zip(sorted_keys) {
+        let mut from = 0;
+        for (key, contacts) in sorted_pieces {
+            let end = from + contacts;
             if self.task_blocks.last() == Some(&key)
                 && let Some(run) = self.tasks.last_mut()
             {
-                run.end = at + 1;
+                run.end = end;
             } else {
-                self.tasks.push(at..at + 1);
+                self.tasks.push(from..end);
                 self.task_blocks.push(key);
             }
+            from = end;
         }
         self.assign_colours(blocks);
         self.sort_by_colour();
@@ -124,6 +125,9 @@ mod tests {
 
     use super::*;
 
+    /// A contact: its blocks, and its index.
+    type Place = ([u32; 2], u32);
+
     proptest! {
         #[test]
         fn tasks_of_one_colour_share_no_block_and_every_contact_has_a_task(
@@ -132,7 +136,7 @@ mod tests {
             let (mut colouring, mut order) = (Colouring::default(), Vec::<Place>::new());
             order.extend(contacts.iter().copied().map(task_key).zip(0..));
             order.sort_unstable();
-            colouring.assign(order.iter().map(|place| place.0), 70);
+            colouring.assign(order.iter().map(|place| (place.0, 1)), 70);
             let mut places = 0;
             for colour in &colouring.colours {
                 let mut taken = std::collections::HashMap::new();

@@ -14,6 +14,7 @@ use crate::contact::placed_surface::{PlacedSurface, meets};
 use crate::contact::system::ContactSystem;
 use crate::math::Real;
 use crate::model::{ColliderModel, Model};
+use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
 type Point = Vector3<f64>;
@@ -96,7 +97,7 @@ impl Obstacles {
 fn fit_colliders<R: Real>(contact: &mut ContactSystem<R>, model: &Model<R>, cloth: usize, time: f64) {
     for (at, collider) in model.colliders.iter().enumerate() {
         if contact.collider_materials_of(cloth)[at].is_some() {
-            contact.collider_states[at].fit_boxes(collider, [time; 2]);
+            contact.collider_states[at].fit_boxes(collider, [time; 2], &ThreadPool::new(1));
         }
     }
 }

@@ -70,7 +70,7 @@ fn advance_object<R: Real>(
 ) {
     let blocks = &model.cloths[cloth].blocks;
     let tasks = blocks.len().div_ceil(BLOCKS_PER_TASK);
-    begin_colliders(cloth, model, contact, now);
+    begin_colliders(cloth, model, contact, now, pool);
     contact.free_tasks.resize_with(contact.free_tasks.len().max(tasks), Default::default);
     let pass = FreePass::new(cloth, (model, &mut *state, &*contact), now);
     pool.parallel_for(tasks, |task| {
@@ -88,6 +88,7 @@ fn begin_colliders<R: Real>(
     model: &Model<R>,
     contact: &mut ContactSystem<R>,
     now: &TimeStep<'_, R>,
+    pool: &ThreadPool,
 ) {
     for at in contact.lists_of(cloth) {
         let collider = contact.collider_contacts[at].collider;
@@ -95,7 +96,7 @@ fn begin_colliders<R: Real>(
         let list = &mut contact.collider_contacts[at];
         if list.is_near {
             let times = [now.span.from, now.span.to];
-            contact.collider_states[collider].fit_boxes(&model.colliders[collider], times);
+            contact.collider_states[collider].fit_boxes(&model.colliders[collider], times, pool);
         }
         if !material.depenetrates {
             list.depenetration.clear();

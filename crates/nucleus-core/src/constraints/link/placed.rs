@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::cloth::elements::CsrLists;
 use crate::contact::narrow_phase::closest_on_triangle;
 use crate::input::PointId;
 use crate::input::links::{ConstraintFrame, Link, LinkSide};
@@ -12,7 +11,7 @@ use crate::state::State;
 
 use super::ends::Prescribed;
 use super::gradient::{Gradient, barycentric_gradients};
-use super::topology::{SurfaceId, SurfaceRow};
+use super::topology::{CsrLists, SurfaceId, SurfaceRow};
 
 type Point = Vector3<f64>;
 

@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::cloth::elements::CsrLists;
 use crate::input::links::{Link, LinkSide};
 use crate::input::{ClothId, ColliderId};
 use crate::math::Real;
@@ -89,5 +88,52 @@ impl Topology {
     /// The faces round each point of a surface.
     pub fn of(&self, id: SurfaceId) -> Option<&CsrLists> {
         self.surfaces.iter().find(|(known, _)| *known == id).map(|(_, faces)| faces)
+    }
+}
+
+/// Lists of numbers in compressed sparse rows: a list for each point.
+#[derive(Debug, Clone, Default)]
+pub struct CsrLists {
+    numbers: Vec<u32>,
+    ends: Vec<u32>,
+}
+
+impl CsrLists {
+    /// Lists for `points` points, from pairs of point and number.
+    pub fn new(points: usize, all: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+        let mut ends = vec![0; points];
+        all.clone().for_each(|(point, _)| ends[point as usize] += 1);
+        let mut sum = 0;
+        for end in &mut ends {
+            sum += std::mem::replace(end, sum);
+        }
+        // `ends` holds the starts now, and the ends once all is filled in.
+        let mut numbers = vec![0; sum as usize];
+        for (point, number) in all {
+            numbers[ends[point as usize] as usize] = number;
+            ends[point as usize] += 1;
+        }
+        Self { numbers, ends }
+    }
+
+    /// The list of one point.
+    pub fn of(&self, point: u32) -> &[u32] {
+        let from = (point as usize).checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.numbers[from as usize..self.ends[point as usize] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_row_holds_exactly_the_numbers_given_for_its_point() {
+        let given = [(0, 7), (2, 8), (1, 7), (2, 9), (2, 7)];
+        let lists = CsrLists::new(4, given.into_iter());
+        let expected: [&[u32]; 4] = [&[7], &[7], &[8, 9, 7], &[]];
+        for (point, expected) in (0..).zip(expected) {
+            assert_eq!(lists.of(point), expected, "{point}");
+        }
     }
 }

@@ -202,12 +202,7 @@ fn find_candidates<R: Real>(
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;
-    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, violated, has_violations, .. } =
-        buffers;
-    elements.find_new_bounds(groups, bounds_violated, new_bounds);
-    has_violations.clear();
-    has_violations.resize(elements.blocks as usize, false);
-    violated.iter().for_each(|&point| has_violations[elements.block[point as usize] as usize] = true);
+    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, has_violations, .. } = buffers;
     cache.remove(&Replaced { bounds_violated, has_violations }, pool);
     let search = ClothSearch {
         elements,

@@ -67,7 +67,7 @@ pub struct Replaced<'a> {
     /// Points with new bounds.
     pub bounds_violated: &'a [bool],
     /// Whether each block has any.
-    pub has_violations: &'a [bool],
+    pub has_violations: &'a [AtomicBool],
 }
 
 impl Replaced<'_> {
@@ -77,7 +77,10 @@ impl Replaced<'_> {
 
     /// Whether all contacts between some blocks stay. Those between more than two are looked at one by one.
     fn keeps_all(&self, blocks: [u32; 2]) -> bool {
-        blocks.iter().all(|&block| self.has_violations.get(block as usize) == Some(&false))
+        let keeps = |block: u32| {
+            self.has_violations.get(block as usize).is_some_and(|any| !any.load(Ordering::Relaxed))
+        };
+        blocks.into_iter().all(keeps)
     }
 }
 
@@ -251,7 +254,7 @@ impl<R: Real, const N: usize, const M: usize> ContactTasks<R, N, M> {
         }
         filled.clear();
         filled.extend((0..).zip(&*tasks).filter(|(_, task)| !task.contacts().is_empty()).map(|(at, _)| at));
-        colouring.assign(filled.iter().map(|&at| tasks[at as usize].blocks), blocks);
+        colouring.assign(filled.iter().map(|&at| (tasks[at as usize].blocks, 1)), blocks);
     }
 
     /// The number of contacts without certificate. Marks their cloths. Needs no colours, because it moves no point.
@@ -366,7 +369,7 @@ mod tests {
             }
 
             // A search replaces the contacts of the points with new bounds, and no others.
-            let has_violations: Vec<bool> = violated.chunks(8).map(|block| block.contains(&true)).collect();
+            let has_violations: Vec<AtomicBool> = violated.chunks(8).map(|block| block.contains(&true).into()).collect();
             let mut left = whole;
             let before = points_of(&left);
             left.remove(&Replaced { bounds_violated: &violated, has_violations: &has_violations }, &pool);
@@ -386,7 +389,8 @@ mod tests {
             list.add(&[found(&met, blocks)], |found| &found.point_point, &pool);
             list.finish(200);
             assert_eq!(list.len(), 199);
-            let all = Replaced { bounds_violated: &[true; 200], has_violations: &[true; 200] };
+            let has_violations = std::array::from_fn::<_, 200, _>(|_| AtomicBool::new(true));
+            let all = Replaced { bounds_violated: &[true; 200], has_violations: &has_violations };
             list.remove(&all, &pool);
         }
         list.finish(200);

@@ -1,6 +1,7 @@
 //! The state of contact among cloths.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::element_bounds::ElementBounds;
@@ -8,7 +9,7 @@ use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
 use crate::contact::cloth::found_contacts::FoundContacts;
 use crate::contact::cloth::frozen::Frozen;
 use crate::contact::cloth::group_bounds::GroupBounds;
-use crate::contact::cloth::local_anchors::LocalAnchors;
+use crate::contact::cloth::local_anchors::{LocalAnchors, local_anchor};
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::search::{RefreshKind, SearchInput};
 use crate::contact::cloth::untangling::Untangling;
@@ -143,8 +144,8 @@ impl<R: Real> ClothContacts<R> {
         self.materials.iter().any(Option::is_some)
     }
 
-    /// Updates the bounds of points, and of the groups that contain a point whose bound has changed. Lists the groups to be
-    /// searched: those of points that violated theirs.
+    /// Updates the bounds of points, and of the groups that contain a point whose bound has changed. Finds which points of
+    /// each group violated theirs, and lists the groups to be searched: those that have any.
     pub(super) fn update_bounds(
         &mut self,
         input: &SearchInput<'_, R>,
@@ -152,44 +153,88 @@ impl<R: Real> ClothContacts<R> {
         refresh: RefreshKind,
         pool: &ThreadPool,
     ) {
-        let anchors = input.anchors;
+        self.update_points(input, refresh, pool);
+        self.update_groups(input.cloths, margin, pool);
+        let Self { elements, buffers: SearchBuffers { groups, new_bounds, .. }, local_anchors, .. } = self;
+        elements.refit(pool);
+        local_anchors.set_extent(elements.extent());
+        groups.clear();
+        groups.extend((0..).zip(&*new_bounds).filter(|(_, new)| **new != NewBounds::None).map(|(at, _)| at));
+    }
+
+    /// Updates the bounds of points: of those that violated theirs, or of all. Marks those whose boxes have changed, and the
+    /// blocks with violations.
+    fn update_points(&mut self, input: &SearchInput<'_, R>, refresh: RefreshKind, pool: &ThreadPool) {
+        let SearchInput { cloths, anchors, .. } = *input;
         let Self { elements, bounds_violated, buffers, trajectories, local_anchors, .. } = self;
-        let SearchBuffers { bounds, group_bounds, bounds_margin, changed, groups, violated, .. } = buffers;
-        let points = input.cloths.iter().flat_map(ClothModel::points);
-        violated.clear();
-        violated.extend(points.clone().filter(|&point| bounds_violated[point as usize]));
-        if refresh.is_incremental() {
-            bounds.update(anchors, trajectories, violated.iter().copied(), changed);
-        } else {
-            bounds.set_origin(anchors.first().copied().unwrap_or_default());
-            bounds.update(anchors, trajectories, points, changed);
+        let SearchBuffers { bounds, has_changed, has_violations, .. } = buffers;
+        let origin = anchors.first().copied().unwrap_or_default();
+        if !refresh.is_incremental() {
+            bounds.set_origin(origin);
         }
-        group_bounds.resize_with(elements.groups.len(), GroupBounds::default);
-        if bounds_margin.replace(margin) == Some(margin) {
-            elements.groups_of(changed.iter().copied(), groups);
-        } else {
-            groups.clear();
-            groups.extend(0..elements.groups.len() as u32);
+        has_changed.clear();
+        has_changed.resize(anchors.len(), false);
+        has_violations.clear();
+        has_violations.resize_with(elements.blocks as usize, AtomicBool::default);
+        let (bounds, local_anchors) = (bounds.shared(anchors.len()), local_anchors.shared(anchors));
+        let has_changed = DisjointSlice::new(has_changed);
+        for cloth in cloths {
+            // The rows of dead particles.
+            bounds_violated[cloth.points().end as usize..cloth.blocks.rows().end as usize].fill(false);
+            pool.parallel_for(cloth.blocks.len(), |block| {
+                for row in cloth.blocks.range(block) {
+                    let (at, is_violated) = (row as usize, bounds_violated[row as usize]);
+                    if !is_violated && refresh.is_incremental() {
+                        continue;
+                    }
+                    // SAFETY: blocks do not overlap.
+                    #[allow(unsafe_code)]
+                    unsafe {
+                        has_changed.set(row, bounds.set(row, &trajectories.of(row), anchors[at]));
+                        if is_violated {
+                            local_anchors.set(row, local_anchor(anchors[at], origin));
+                        }
+                    }
+                    let has_violations = &has_violations[elements.block[at] as usize];
+                    if is_violated && !has_violations.load(Ordering::Relaxed) {
+                        has_violations.store(true, Ordering::Relaxed);
+                    }
+                }
+            });
         }
+    }
+
+    /// Updates the boxes of groups, and which of their points have new bounds.
+    fn update_groups(&mut self, cloths: &[ClothModel<R>], margin: f32, pool: &ThreadPool) {
+        let Self { elements, bounds_violated, buffers, .. } = self;
+        let SearchBuffers { bounds, group_bounds, bounds_margin, has_changed, new_bounds, .. } = buffers;
+        let groups = elements.groups.len();
+        group_bounds.resize_with(groups, GroupBounds::default);
+        new_bounds.resize(groups, NewBounds::None);
+        let all_change = bounds_margin.replace(margin) != Some(margin);
         let mut swept_boxes = std::mem::take(&mut elements.swept_boxes);
-        let (boxes, group_bounds) = (DisjointSlice::new(&mut swept_boxes), DisjointSlice::new(group_bounds));
-        pool.parallel_for(groups.len().div_ceil(GROUPS_PER_TASK), |task| {
-            for &group in groups.chunks(GROUPS_PER_TASK).nth(task).unwrap_or_default() {
-                let ClothGroup { cloth, group: own } = &elements.groups[group as usize];
-                // SAFETY: a group is listed once.
+        let (boxes, group_bounds, new_bounds) = (
+            DisjointSlice::new(&mut swept_boxes),
+            DisjointSlice::new(group_bounds),
+            DisjointSlice::new(new_bounds),
+        );
+        pool.parallel_for(groups.div_ceil(GROUPS_PER_UPDATE), |task| {
+            for group in task * GROUPS_PER_UPDATE..groups.min((task + 1) * GROUPS_PER_UPDATE) {
+                let (at, points) = (group as u32, elements.points_of(group));
+                let changes = all_change || points.iter().any(|&point| has_changed[point as usize]);
+                // SAFETY: every group is in one task.
                 #[allow(unsafe_code)]
                 unsafe {
-                    boxes.set(group, bounds.bound(elements.points_of(group as usize), margin));
-                    if let [slot] = group_bounds.run(group..group + 1) {
-                        slot.fill(&input.cloths[*cloth as usize].boundary, own, bounds, margin);
+                    new_bounds.set(at, elements.new_bounds_of(group, bounds_violated));
+                    if changes && let [slot] = group_bounds.run(at..at + 1) {
+                        let ClothGroup { cloth, group } = &elements.groups[group];
+                        boxes.set(at, bounds.bound(points, margin));
+                        slot.fill(&cloths[*cloth as usize].boundary, group, bounds, margin);
                     }
                 }
             }
         });
         elements.swept_boxes = swept_boxes;
-        elements.refit();
-        local_anchors.update(anchors, violated.iter().copied(), elements.extent());
-        elements.groups_of(violated.iter().copied(), groups);
     }
 }
 
@@ -200,21 +245,21 @@ pub struct SearchBuffers<R> {
     pub(super) group_bounds: Vec<GroupBounds>,
     /// The margin in metres of all group bounds; `None` if they are out of date.
     bounds_margin: Option<f32>,
-    /// The points that violate their bounds.
-    pub(super) violated: Vec<u32>,
-    /// The points whose bounds have changed.
-    changed: Vec<u32>,
+    /// Whether the boxes of each point have changed.
+    has_changed: Vec<bool>,
     /// The groups that are searched.
     pub(super) groups: Vec<u32>,
     /// Which points of each group have new bounds.
     pub(super) new_bounds: Vec<NewBounds>,
     /// Whether a point of each block violated its bound.
-    pub(super) has_violations: Vec<bool>,
+    pub(super) has_violations: Vec<AtomicBool>,
     /// The candidates that each task has found.
     pub(super) tasks: Vec<FoundContacts<R>>,
 }
 
-/// Groups in a task.
+/// Groups in a task that updates their boxes.
+const GROUPS_PER_UPDATE: usize = 128;
+/// Groups in a search task.
 pub(super) const GROUPS_PER_TASK: usize = 16;
 /// Search tasks whose candidates are held at a time.
 pub(super) const TASKS_AT_A_TIME: usize = 64;
@@ -225,8 +270,7 @@ impl<R> Default for SearchBuffers<R> {
             bounds: ElementBounds::default(),
             group_bounds: Vec::new(),
             bounds_margin: None,
-            violated: Vec::new(),
-            changed: Vec::new(),
+            has_changed: Vec::new(),
             groups: Vec::new(),
             new_bounds: Vec::new(),
             has_violations: Vec::new(),

@@ -5,10 +5,11 @@ use std::ops::Range;
 
 use crate::contact::bvh::{Aabb, SweptBox};
 use crate::contact::ccd::CERTIFIED_GAP;
-use crate::contact::cloth::motion_bounds::Trajectories;
-use crate::contact::cloth::swept_points::{ElementPoints, ROUNDING, SweptPoints};
+use crate::contact::cloth::motion_bounds::Trajectory;
+use crate::contact::cloth::swept_points::{ElementPoints, ROUNDING, SweptPoints, swept_point};
 use crate::contact::narrow_phase::{ElementPositions, between_centroids, gap_along, shortest_line};
 use crate::math::{Real, dot};
+use crate::parallel::disjoint::DisjointSlice;
 use crate::particles::population::close_up;
 
 /// Share of the distance at rest that neighbours keep: a cloth thicker than its faces must still bend.
@@ -22,6 +23,13 @@ pub struct ElementBounds {
     swept_points: SweptPoints,
     /// Boxes around the balls at both ends.
     boxes: Vec<SweptBox>,
+}
+
+/// All points, to be set in tasks.
+pub struct SharedBounds<'a> {
+    origin: [f64; 3],
+    swept_points: DisjointSlice<'a, [[f32; 4]; 2]>,
+    boxes: DisjointSlice<'a, SweptBox>,
 }
 
 /// The contact distance of two elements.
@@ -40,26 +48,15 @@ impl ElementBounds {
         self.origin = origin;
     }
 
-    /// Updates some points. Lists those whose boxes have changed.
-    pub fn update<R: Real>(
-        &mut self,
-        anchors: &[[f64; 3]],
-        trajectories: &Trajectories<R>,
-        points: impl Iterator<Item = u32>,
-        changed: &mut Vec<u32>,
-    ) {
-        changed.clear();
-        self.swept_points.resize(anchors.len());
-        self.boxes.resize(anchors.len(), [Aabb::EMPTY; 2]);
-        for point in points {
-            let at = point as usize;
-            let anchor = std::array::from_fn(|axis| anchors[at][axis] - self.origin[axis]);
-            let [start, end] = self.swept_points.set(at, &trajectories.of(point), anchor);
-            let boxes = [Aabb::ball(start.0, start.1), Aabb::ball(end.0, end.1)];
-            if self.boxes[at] != boxes {
-                self.boxes[at] = boxes;
-                changed.push(point);
-            }
+    /// A view of `points` points through which tasks set points of their own.
+    pub fn shared(&mut self, points: usize) -> SharedBounds<'_> {
+        let Self { origin, swept_points, boxes } = self;
+        swept_points.resize(points);
+        boxes.resize(points, [Aabb::EMPTY; 2]);
+        SharedBounds {
+            origin: *origin,
+            swept_points: swept_points.shared(),
+            boxes: DisjointSlice::new(boxes),
         }
     }
 
@@ -85,6 +82,27 @@ impl ElementBounds {
     /// The swept position of each point.
     pub fn swept_points(&self) -> &SweptPoints {
         &self.swept_points
+    }
+}
+
+impl SharedBounds<'_> {
+    /// Sets a point from its trajectory. `anchor` is in metres. Returns whether its boxes have changed.
+    ///
+    /// # Safety
+    /// No other task of this loop uses the point.
+    #[inline]
+    #[allow(unsafe_code)]
+    pub unsafe fn set<R: Real>(&self, point: u32, trajectory: &Trajectory<R>, anchor: [f64; 3]) -> bool {
+        let anchor = std::array::from_fn(|axis| anchor[axis] - self.origin[axis]);
+        let ends = swept_point(trajectory, anchor);
+        let boxes = ends.map(|[x, y, z, radius]| Aabb::ball([x, y, z], radius));
+        // SAFETY: as the caller ensures.
+        unsafe {
+            let has_changed = self.boxes.get(point) != boxes;
+            self.boxes.set(point, boxes);
+            self.swept_points.set(point, ends);
+            has_changed
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::contact::boundary::ElementGroup;
 use crate::contact::bvh::{Aabb, Bvh, SweptBox};
 use crate::math::Real;
 use crate::model::ClothModel;
+use crate::parallel::thread_pool::ThreadPool;
 
 /// Triangles in a group.
 const GROUP_SIZE: usize = 8;
@@ -44,8 +45,6 @@ pub struct ElementGroups {
     first_groups: Vec<u32>,
     /// The swept box of each group.
     pub swept_boxes: Vec<SweptBox>,
-    /// The groups that contain an element of each point; empty for padding rows.
-    pub groups_of_point: CsrLists,
     /// Whether each point belongs to no face.
     pub is_free_point: Vec<bool>,
     /// The points of each group, and the end of each group's run.
@@ -67,7 +66,7 @@ checkpoint_struct!([] ElementGroups {
     columns: [rest_positions],
     values: [],
     parts: [bvhs],
-    rebuilt: [groups, first_groups, swept_boxes, points, ends, block, cloth, edge_lengths, blocks, groups_of_point, is_free_point],
+    rebuilt: [groups, first_groups, swept_boxes, points, ends, block, cloth, edge_lengths, blocks, is_free_point],
 });
 
 impl ElementGroups {
@@ -105,32 +104,25 @@ impl ElementGroups {
         &self.points[from as usize..self.ends[group] as usize]
     }
 
-    /// Writes the groups that contain any of these points, sorted.
-    pub fn groups_of(&self, points: impl Iterator<Item = u32>, groups: &mut Vec<u32>) {
-        groups.clear();
-        points.for_each(|point| groups.extend(self.groups_of_point.of(point)));
-        groups.sort_unstable();
-        groups.dedup();
-    }
-
-    /// Writes for each group which of its points have new bounds; `searched` are the groups that have any.
-    pub fn find_new_bounds(&self, searched: &[u32], has_new_bound: &[bool], found: &mut Vec<NewBounds>) {
-        found.clear();
-        found.resize(self.groups.len(), NewBounds::None);
-        for &group in searched {
-            let all = self.points_of(group as usize).iter().all(|&point| has_new_bound[point as usize]);
-            found[group as usize] = if all { NewBounds::All } else { NewBounds::Some };
+    /// Which points of a group have new bounds.
+    pub fn new_bounds_of(&self, group: usize, has_new_bound: &[bool]) -> NewBounds {
+        let points = self.points_of(group);
+        match points.iter().filter(|&&point| has_new_bound[point as usize]).count() {
+            0 => NewBounds::None,
+            all if all == points.len() => NewBounds::All,
+            _ => NewBounds::Some,
         }
     }
 
-    /// Refits the hierarchy to the swept boxes.
-    pub fn refit(&mut self) {
+    /// Refits the hierarchies to the swept boxes.
+    pub fn refit(&mut self, pool: &ThreadPool) {
         let Self { bvhs, first_groups, swept_boxes, .. } = self;
         for (bvh, &first) in bvhs.iter_mut().zip(&*first_groups) {
-            bvh.refit(|group| {
+            let swept_bound = |group: usize| {
                 let [start, end] = swept_boxes[first as usize + group];
                 start.union(end)
-            });
+            };
+            bvh.refit_in_tasks(swept_bound, pool);
         }
     }
 
@@ -192,10 +184,6 @@ impl ElementGroups {
             self.points.truncate(end);
             self.ends.push(end as u32);
         }
-        let groups = 0..self.groups.len();
-        let pairs =
-            groups.flat_map(|group| self.points_of(group).iter().map(move |&point| (point, group as u32)));
-        self.groups_of_point = CsrLists::new(anchors.len(), pairs);
         let centre = |group: usize| {
             let points = self.points_of(group);
             let sum: Vector3<f64> = points.iter().map(|&point| Vector3::from(anchors[point as usize])).sum();
@@ -206,52 +194,5 @@ impl ElementGroups {
         let bvh = |groups: Range<u32>| Bvh::new(&groups.map(|k| centre(k as usize)).collect::<Vec<_>>());
         self.bvhs = of_cloths.into_iter().map(bvh).collect();
         self.swept_boxes = vec![[Aabb::EMPTY; 2]; self.groups.len()];
-    }
-}
-
-/// Lists of numbers in compressed sparse rows: a list for each point.
-#[derive(Debug, Clone, Default)]
-pub struct CsrLists {
-    numbers: Vec<u32>,
-    ends: Vec<u32>,
-}
-
-impl CsrLists {
-    /// Lists for `points` points, from pairs of point and number.
-    pub fn new(points: usize, all: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
-        let mut ends = vec![0; points];
-        all.clone().for_each(|(point, _)| ends[point as usize] += 1);
-        let mut sum = 0;
-        for end in &mut ends {
-            sum += std::mem::replace(end, sum);
-        }
-        // `ends` holds the starts now, and the ends once all is filled in.
-        let mut numbers = vec![0; sum as usize];
-        for (point, number) in all {
-            numbers[ends[point as usize] as usize] = number;
-            ends[point as usize] += 1;
-        }
-        Self { numbers, ends }
-    }
-
-    /// The list of one point.
-    pub fn of(&self, point: u32) -> &[u32] {
-        let from = (point as usize).checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.numbers[from as usize..self.ends[point as usize] as usize]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_row_holds_exactly_the_numbers_given_for_its_point() {
-        let given = [(0, 7), (2, 8), (1, 7), (2, 9), (2, 7)];
-        let lists = CsrLists::new(4, given.into_iter());
-        let expected: [&[u32]; 4] = [&[7], &[7], &[8, 9, 7], &[]];
-        for (point, expected) in (0..).zip(expected) {
-            assert_eq!(lists.of(point), expected, "{point}");
-        }
     }
 }

@@ -2,6 +2,7 @@
 //! exact within a tolerance. Nearly all contacts that a sweep visits exceed their thickness by more.
 
 use crate::math::{Lanes, Real, Row4};
+use crate::parallel::disjoint::DisjointSlice;
 
 /// The anchor of each point in this frame.
 #[derive(Debug, Default)]
@@ -16,25 +17,29 @@ pub struct LocalAnchors<R> {
 /// here, and a margin.
 const ROUNDINGS: f64 = 96.0;
 
+/// An anchor relative to the origin, the anchor of the first point.
+pub fn local_anchor<R: Real>(anchor: [f64; 3], origin: [f64; 3]) -> Row4<R> {
+    Row4::new(std::array::from_fn(|axis| anchor[axis] - origin[axis]), R::ZERO)
+}
+
 impl<R: Real> LocalAnchors<R> {
     /// Makes all gaps unknown, before anchors move.
     pub fn clear(&mut self) {
         self.rows.clear();
     }
 
-    /// Takes up the anchors of all points, or of `points` once all are known. No position is farther than `extent` metres
-    /// from the origin on any axis.
-    pub fn update(&mut self, anchors: &[[f64; 3]], points: impl Iterator<Item = u32>, extent: f64) {
-        let Some(&origin) = anchors.first() else { return };
-        let row = |anchor: [f64; 3]| {
-            Row4::new([anchor[0] - origin[0], anchor[1] - origin[1], anchor[2] - origin[2]], R::ZERO)
-        };
-        if self.rows.len() == anchors.len() {
-            points.for_each(|point| self.rows[point as usize] = row(anchors[point as usize]));
-        } else {
+    /// Takes up the anchors of all points where they are unknown. Returns a view through which tasks set points of their own
+    /// to [`local_anchor`].
+    pub fn shared(&mut self, anchors: &[[f64; 3]]) -> DisjointSlice<'_, Row4<R>> {
+        if self.rows.len() != anchors.len() {
             self.rows.clear();
-            self.rows.extend(anchors.iter().copied().map(row));
+            self.rows.extend(anchors.iter().map(|&anchor| local_anchor(anchor, anchors[0])));
         }
+        DisjointSlice::new(&mut self.rows)
+    }
+
+    /// Sets the tolerance: no position is farther than `extent` metres from the origin on any axis.
+    pub fn set_extent(&mut self, extent: f64) {
         self.tolerance = R::EPSILON * R::from_f64(ROUNDINGS * extent);
     }
 
@@ -87,7 +92,8 @@ mod tests {
             let moved = moved.map(|place| Row4::<f32>::new(place, 1.0));
             let mut local = LocalAnchors::<f32>::default();
             prop_assert_eq!(local.min_gap::<1, 3>(normal, [0, 1, 2, 3], |point| moved[point as usize]), None);
-            local.update(&anchors, 0..5, 3.0);
+            local.shared(&anchors);
+            local.set_extent(3.0);
             let gap = local.min_gap::<1, 3>(normal, [1, 2, 3, 4], |point| moved[point as usize]).expect("anchors are known");
             let height = |point: usize| {
                 (0..3).map(|axis| f64::from(normal[axis]) * (anchors[point][axis] + f64::from(moved[point].0[axis]))).sum::<f64>()

@@ -1,17 +1,18 @@
 //! The active set: the contacts of a cloth and a collider that can touch within the next few time steps.
 
+use std::ops::Range;
+
 use crate::contact::collider::contact::ColliderContact;
+use crate::contact::collider::contact_list::PLACES_PER_TASK;
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::plane_columns::{FourPlanes, PlaneColumns};
-use crate::contact::colouring::{Colouring, Place, SERIAL, task_key};
+use crate::contact::collider::selected::{Ranks, Selected, merge};
+use crate::contact::colouring::{Colouring, task_key};
 use crate::contact::depenetration::Depenetration;
 use crate::math::Real;
 use crate::model::blocks::Blocks;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-
-/// Contacts per selection task.
-const CONTACTS_PER_TASK: usize = 1024;
 
 /// The active contacts of a [`ColliderContacts`](crate::contact::collider::contacts::ColliderContacts), by kind.
 #[derive(Debug, Default)]
@@ -31,41 +32,42 @@ impl<R: Real> ActiveSet<R> {
         self.faces.clear();
     }
 
-    /// Selects the active contacts of all kinds. `by_point` holds the indices of point-face contacts, by point, in its lower
-    /// halves.
+    /// Selects the active contacts of all kinds.
     pub(super) fn select(
         &mut self,
         selection: &Selection<'_, R>,
-        (point_face, by_point): (&mut [ColliderContact<R, 1, 3>], &[u64]),
+        point_face: &mut [ColliderContact<R, 1, 3>],
         edge_edge: &mut [ColliderContact<R, 2, 2>],
         face_point: &mut [ColliderContact<R, 3, 1>],
         pool: &ThreadPool,
     ) {
-        let [of_points, of_edges, of_faces] = [by_point.len(), edge_edge.len(), face_point.len()]
-            .map(|contacts| contacts.div_ceil(CONTACTS_PER_TASK));
+        let counts @ [all_points, all_edges, all_faces] =
+            [point_face.len(), edge_edge.len(), face_point.len()];
+        let [of_points, of_edges, of_faces] = counts.map(|contacts| contacts.div_ceil(PLACES_PER_TASK));
         let points = self.points.begin_selection(of_points);
         let edges = self.edges.begin_selection(of_edges);
         let faces = self.faces.begin_selection(of_faces);
         let own = |task: usize, contacts: usize| {
-            (task * CONTACTS_PER_TASK) as u32..((task + 1) * CONTACTS_PER_TASK).min(contacts) as u32
+            (task * PLACES_PER_TASK) as u32..((task + 1) * PLACES_PER_TASK).min(contacts) as u32
         };
-        let (all_edges, all_faces) = (edge_edge.len(), face_point.len());
-        let lists =
-            (DisjointSlice::new(point_face), DisjointSlice::new(edge_edge), DisjointSlice::new(face_point));
+        let lists = (
+            DisjointSlice::new(&mut *point_face),
+            DisjointSlice::new(edge_edge),
+            DisjointSlice::new(face_point),
+        );
         pool.parallel_for(of_points + of_edges + of_faces, |task| {
             if let Some(task) = task.checked_sub(of_points + of_edges) {
                 selection.select(lists.2, own(task, all_faces), (faces, task));
             } else if let Some(task) = task.checked_sub(of_points) {
                 selection.select(lists.1, own(task, all_edges), (edges, task));
             } else {
-                let run = own(task, by_point.len());
-                let among = by_point[run.start as usize..run.end as usize].iter().map(|&key| key as u32);
-                selection.select(lists.0, among, (points, task));
+                selection.select(lists.0, own(task, all_points), (points, task));
             }
         });
-        self.points.sort_by_task(ActiveContacts::<R, 1>::runs(selection.blocks));
-        self.edges.sort_by_task(ActiveContacts::<R, 2>::runs(selection.blocks));
-        self.faces.sort_by_task(ActiveContacts::<R, 3>::runs(selection.blocks));
+        self.points.merge(selection.blocks, pool);
+        self.points.sort_by_point(point_face, pool);
+        self.edges.merge(selection.blocks, pool);
+        self.faces.merge(selection.blocks, pool);
     }
 }
 
@@ -84,24 +86,8 @@ pub struct ActiveContacts<R, const N: usize> {
     pub uncertified: Vec<u32>,
     /// What the tasks of a selection have found.
     selected: Vec<Selected>,
-    /// Scratch memory of the sort by task: the number of contacts within each run of points, and contacts between runs.
-    counts: Vec<u32>,
-    between: Vec<Place>,
-}
-
-/// The active contacts among those of a selection task: their places in the order of tasks, and the indices of uncertified
-/// ones.
-#[derive(Debug, Default)]
-pub(super) struct Selected {
-    places: Vec<Place>,
-    uncertified: Vec<u32>,
-}
-
-impl Selected {
-    fn clear(&mut self) {
-        self.places.clear();
-        self.uncertified.clear();
-    }
+    /// Scratch memory.
+    ranks: Ranks,
 }
 
 impl<R, const N: usize> Default for ActiveContacts<R, N> {
@@ -113,8 +99,7 @@ impl<R, const N: usize> Default for ActiveContacts<R, N> {
             first_fours: Vec::new(),
             uncertified: Vec::new(),
             selected: Vec::new(),
-            counts: Vec::new(),
-            between: Vec::new(),
+            ranks: Ranks::default(),
         }
     }
 }
@@ -153,42 +138,22 @@ impl<R: Real, const N: usize> ActiveContacts<R, N> {
         DisjointSlice::new(&mut self.selected)
     }
 
-    /// Puts the selected contacts in the order of their tasks: those within each run of points, then those between runs.
-    /// Contacts of one task keep their order.
-    fn sort_by_task(&mut self, runs: u32) {
-        let Self { indices, colouring, uncertified, selected, counts, between, .. } = self;
-        counts.clear();
-        counts.resize(runs as usize + 1, 0);
-        between.clear();
-        uncertified.clear();
-        for found in &*selected {
-            uncertified.extend_from_slice(&found.uncertified);
-            for &(key, index) in &found.places {
-                match is_within(key) {
-                    true => counts[key[0] as usize + 1] += 1,
-                    false => between.push((key, index)),
-                }
-            }
-        }
-        between.sort_unstable();
-        for run in 1..counts.len() {
-            counts[run] += counts[run - 1];
-        }
-        let within = counts[runs as usize];
-        let keys = (0..runs)
-            .zip(counts.windows(2))
-            .flat_map(|(run, ends)| (ends[0]..ends[1]).map(move |_| [run; 2]));
-        colouring.assign(keys.chain(between.iter().map(|&(key, _)| key)), runs);
-        indices.clear();
-        indices.resize(within as usize, 0);
-        for &(key, index) in
-            selected.iter().flat_map(|found| &found.places).filter(|(key, _)| is_within(*key))
-        {
-            let to = &mut counts[key[0] as usize];
-            indices[*to as usize] = index;
-            *to += 1;
-        }
-        indices.extend(between.iter().map(|&(_, index)| index));
+    /// Puts the selected contacts in the order of their tasks.
+    fn merge(&mut self, blocks: &Blocks, pool: &ThreadPool) {
+        let runs = Self::runs(blocks);
+        let Self { indices, colouring, uncertified, selected, ranks, .. } = self;
+        merge(selected, ranks, (indices, uncertified), (colouring, runs), pool);
+    }
+
+    /// Sorts the contacts of each task by point.
+    fn sort_by_point<const M: usize>(&mut self, contacts: &[ColliderContact<R, N, M>], pool: &ThreadPool) {
+        let (tasks, indices) = (&self.colouring.tasks, DisjointSlice::new(&mut self.indices));
+        pool.parallel_for(tasks.len(), |at| {
+            // SAFETY: tasks share no contact.
+            #[allow(unsafe_code)]
+            let run = unsafe { indices.run(tasks[at].clone()) };
+            run.sort_unstable_by_key(|&index| (contacts[index as usize].points, index));
+        });
     }
 
     /// Copies the planes of all contacts to their columns.
@@ -239,11 +204,6 @@ impl<R: Real, const N: usize> ActiveContacts<R, N> {
     }
 }
 
-/// Whether a task is that of the contacts within one run of points.
-fn is_within(key: [u32; 2]) -> bool {
-    key[0] == key[1] && key != SERIAL
-}
-
 /// Share of the interaction range by which the gap of an idle contact must exceed it.
 const IDLE_MARGIN: f64 = 1e-3;
 
@@ -264,31 +224,25 @@ impl<R: Real> Selection<'_, R> {
     pub(super) fn select<const N: usize, const M: usize>(
         &self,
         contacts: DisjointSlice<'_, ColliderContact<R, N, M>>,
-        among: impl Iterator<Item = u32>,
+        among: Range<u32>,
         (results, task): (DisjointSlice<'_, Selected>, usize),
     ) {
         // SAFETY: every task has a result of its own.
         #[allow(unsafe_code)]
-        let [Selected { places, uncertified }] = (unsafe { results.run(task as u32..task as u32 + 1) })
-        else {
-            return;
-        };
-        places.clear();
-        uncertified.clear();
+        let [found] = (unsafe { results.run(task as u32..task as u32 + 1) }) else { return };
+        found.clear();
         let [range, certified] = self.range;
         for index in among {
             // SAFETY: a contact belongs to one task.
             #[allow(unsafe_code)]
             let [contact] = (unsafe { contacts.run(index..index + 1) }) else { continue };
-            if self.growth.is_some_and(|growth| contact.is_idle(growth)) {
+            if contact.is_vacant() || self.growth.is_some_and(|growth| contact.is_idle(growth)) {
                 continue;
             }
             let gap = self.min_gap(contact);
             if gap < range && self.is_acting(contact) {
-                places.push((ActiveContacts::<R, N>::task_of(contact.points, self.blocks), index));
-                if gap <= certified {
-                    uncertified.push(index);
-                }
+                let task = ActiveContacts::<R, N>::task_of(contact.points, self.blocks);
+                found.push(task, index, gap > certified);
             }
         }
     }

@@ -154,7 +154,7 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
             list.clear();
             continue;
         };
-        collider_states[collider].fit_boxes(&colliders[collider], interval);
+        collider_states[collider].fit_boxes(&colliders[collider], interval, pool);
         let state_of = &collider_states[collider];
         let view = ColliderStepArgs {
             material,

@@ -128,7 +128,37 @@ pub enum Certificate {
     Inseparable,
 }
 
+/// The points of a vacant place.
+const VACANT: u32 = u32::MAX;
+
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
+    /// Removes the contact, and leaves its place.
+    pub fn vacate(&mut self) {
+        self.points = [VACANT; N];
+    }
+
+    /// Whether the place of a contact is vacant.
+    #[inline(always)]
+    pub fn is_vacant(&self) -> bool {
+        self.points[0] == VACANT
+    }
+
+    /// A contact of some points that has no plane yet.
+    #[cfg(test)]
+    pub(super) fn at(points: [u32; N]) -> Self {
+        let (zero, none) = ([R::ZERO; 3], [R::ZERO; N]);
+        Self {
+            points,
+            collider_points: [0; M],
+            normal: zero,
+            plane: [none; 2],
+            weights: none,
+            surface_motion: zero,
+            plane_origin: zero,
+            idle_until: none,
+        }
+    }
+
     /// A contact with its plane across the shortest line, whose ends are given by weights.
     #[inline(always)]
     pub(super) fn across(

@@ -8,6 +8,7 @@ use crate::contact::collider::Boxes;
 use crate::contact::collider::active_set::{ActiveSet, Selection};
 use crate::contact::collider::candidates::OverlappingPair;
 use crate::contact::collider::contact::{Certificate, ColliderContact, Outcome};
+use crate::contact::collider::contact_list::ContactList;
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::depenetration::Depenetration;
 use crate::contact::material::ContactMaterial;
@@ -29,17 +30,15 @@ pub struct ColliderContacts<R> {
     /// The candidate interval, as shares of the frame.
     pub interval: [f64; 2],
     /// Points of the cloth near faces of the collider.
-    pub point_face: Vec<ColliderContact<R, 1, 3>>,
+    pub point_face: ContactList<R, 1, 3>,
     /// Edges near edges.
-    pub edge_edge: Vec<ColliderContact<R, 2, 2>>,
+    pub edge_edge: ContactList<R, 2, 2>,
     /// Faces of the cloth near points of the collider.
-    pub face_point: Vec<ColliderContact<R, 3, 1>>,
-    /// `point_face` sorted by point: the point in the upper half, the index in the lower.
-    pub by_point: Vec<u64>,
+    pub face_point: ContactList<R, 3, 1>,
     /// The contacts that can touch within the next few time steps.
     pub active: ActiveSet<R>,
     /// The results of search tasks.
-    pub tasks: Vec<Mutex<FoundContacts<R>>>,
+    pub tasks: Vec<FoundContacts<R>>,
     /// Points of the cloth that are inside the collider.
     pub depenetration: Depenetration,
     /// Points with a contact without certificate, at the last certification.
@@ -99,10 +98,9 @@ impl<R: Real> ColliderContacts<R> {
             collider,
             is_near: true,
             interval,
-            point_face: Vec::new(),
-            edge_edge: Vec::new(),
-            face_point: Vec::new(),
-            by_point: Vec::new(),
+            point_face: ContactList::default(),
+            edge_edge: ContactList::default(),
+            face_point: ContactList::default(),
             active: ActiveSet::default(),
             tasks: Vec::new(),
             depenetration: Depenetration::default(),
@@ -112,13 +110,12 @@ impl<R: Real> ColliderContacts<R> {
 
     /// The number of contacts.
     pub fn len(&self) -> usize {
-        self.point_face.len() + self.edge_edge.len() + self.face_point.len()
+        self.point_face.count() + self.edge_edge.count() + self.face_point.count()
     }
 
     /// Removes all contacts, keeps the capacity.
     pub fn clear(&mut self) {
         self.point_face.clear();
-        self.by_point.clear();
         self.edge_edge.clear();
         self.face_point.clear();
         self.active.clear();
@@ -126,9 +123,9 @@ impl<R: Real> ColliderContacts<R> {
 
     /// Rebases all planes on anchors that move to the points' positions.
     pub fn shift_anchors(&mut self, moved: &[Row4<R>]) {
-        self.point_face.iter_mut().for_each(|contact| contact.shift_anchors(moved));
-        self.edge_edge.iter_mut().for_each(|contact| contact.shift_anchors(moved));
-        self.face_point.iter_mut().for_each(|contact| contact.shift_anchors(moved));
+        self.point_face.contacts_mut().for_each(|contact| contact.shift_anchors(moved));
+        self.edge_edge.contacts_mut().for_each(|contact| contact.shift_anchors(moved));
+        self.face_point.contacts_mut().for_each(|contact| contact.shift_anchors(moved));
     }
 
     /// Selects the contacts whose gap can fall below the interaction range of the material within a window of the candidate
@@ -143,7 +140,7 @@ impl<R: Real> ColliderContacts<R> {
         blocks: &Blocks,
         pool: &ThreadPool,
     ) {
-        let Self { interval, point_face, edge_edge, face_point, by_point, active, depenetration, .. } = self;
+        let Self { interval, point_face, edge_edge, face_point, active, depenetration, .. } = self;
         let share = |time: f64| {
             if interval[1] > interval[0] { (time - interval[0]) / (interval[1] - interval[0]) } else { 0.0 }
         };
@@ -151,7 +148,7 @@ impl<R: Real> ColliderContacts<R> {
         let thickness = R::from_f64(material.thickness);
         let range = [material.adhesion_range, CERTIFIED_GAP].map(|range| thickness * R::from_f64(range));
         let selection = Selection { bounds, window, range, growth, depenetration, blocks };
-        active.select(&selection, (point_face, by_point), edge_edge, face_point, pool);
+        active.select(&selection, point_face, edge_edge, face_point, pool);
         self.copy_planes(pool);
     }
 

@@ -9,8 +9,8 @@
 //! | motion bounds of points | [`motion_bounds`] |
 //! | broad phase: when bounds are predicted and contacts searched | [`broad_phase`] |
 //! | which elements can touch, group by group; four pairs at a time | [`query`], [`candidates`] |
-//! | the contacts of one cloth with one collider, and their certificates | [`contacts`] |
-//! | the contacts that can touch within the next few time steps | [`active_set`] |
+//! | the contacts of one cloth with one collider, and their certificates; how a search replaces them | [`contacts`], [`contact_list`] |
+//! | the contacts that can touch within the next few time steps, in the order of sweeps | [`active_set`], [`selected`] |
 //! | a sweep over them | [`sweep`] |
 //! | the planes of the active contacts, four at a time | [`plane_columns`] |
 //! | one contact: its separating plane, and its certificate | [`contact`] |
@@ -31,6 +31,7 @@ pub mod affine_motion;
 pub mod broad_phase;
 pub mod candidates;
 pub mod contact;
+pub mod contact_list;
 pub mod contacts;
 pub mod frame_start;
 pub mod free_points;
@@ -46,6 +47,7 @@ pub mod pinched;
 mod plane_columns;
 pub mod query;
 mod response;
+mod selected;
 pub mod separation;
 pub mod start_gaps;
 pub mod sweep;
@@ -55,6 +57,8 @@ use nalgebra::Vector3;
 use crate::bytes::checkpoint_struct;
 use crate::contact::bvh::{Aabb, Bvh};
 use crate::model::ColliderModel;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
 
 /// A collider in the current frame, and the boxes of its elements over an interval of it.
 #[derive(Debug, Clone)]
@@ -169,7 +173,7 @@ impl ColliderState {
 
     /// Fits the boxes to an interval of the frame, relative to [`origin`](Self::origin). Those of a collider at
     /// rest stay valid.
-    pub fn fit_boxes(&mut self, model: &ColliderModel, interval: [f64; 2]) {
+    pub fn fit_boxes(&mut self, model: &ColliderModel, interval: [f64; 2], pool: &ThreadPool) {
         if self.fitted_interval == Some(interval) || (self.fitted_interval.is_some() && !self.moves) {
             return;
         }
@@ -181,10 +185,10 @@ impl ColliderState {
             Aabb::of(path)
         };
         let boundary = &model.boundary;
-        refill(&mut boxes.triangles, boundary.triangles.iter().map(|triangle| bound(triangle)));
-        refill(&mut boxes.edges, boundary.edges.iter().map(|edge| bound(edge)));
-        refill(&mut boxes.points, boundary.points.iter().map(|&point| bound(&[point])));
-        self.bvh.refit(|triangle| boxes.triangles[triangle]);
+        refill(&mut boxes.triangles, &boundary.triangles, |triangle| bound(triangle), pool);
+        refill(&mut boxes.edges, &boundary.edges, |edge| bound(edge), pool);
+        refill(&mut boxes.points, &boundary.points, |&point| bound(&[point]), pool);
+        self.bvh.refit_in_tasks(|triangle| boxes.triangles[triangle], pool);
         self.boxes = boxes;
         self.fitted_interval = Some(interval);
     }
@@ -196,7 +200,26 @@ fn corners(points: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
     points.iter().fold([first, first], |[low, high], point| [low.inf(point), high.sup(point)])
 }
 
-fn refill(column: &mut Vec<Aabb>, boxes: impl Iterator<Item = Aabb>) {
-    column.clear();
-    column.extend(boxes);
+/// Boxes per task.
+const BOXES_PER_TASK: usize = 512;
+
+/// Sets the boxes of some elements.
+fn refill<T: Sync>(
+    column: &mut Vec<Aabb>,
+    elements: &[T],
+    bound: impl Fn(&T) -> Aabb + Sync,
+    pool: &ThreadPool,
+) {
+    column.resize(elements.len(), Aabb::EMPTY);
+    let boxes = DisjointSlice::new(column);
+    pool.parallel_for(elements.len().div_ceil(BOXES_PER_TASK), |task| {
+        let own = elements.chunks(BOXES_PER_TASK).nth(task).unwrap_or_default();
+        for (at, element) in (task * BOXES_PER_TASK..).zip(own) {
+            // SAFETY: every element is in one task.
+            #[allow(unsafe_code)]
+            unsafe {
+                boxes.set(at as u32, bound(element));
+            }
+        }
+    });
 }

@@ -55,17 +55,13 @@ fn find_obstacles<R: Real>(
         }
     });
     let exits = obstacles.len();
+    obstacles.sort_unstable_by_key(|obstacle| obstacle.point);
     for_contacts_of(pass, cloth, |list, step, _, _| {
         let step = step.with_thickness_scale(thickness_scale);
-        for at in 0..exits {
-            let point = obstacles[at].point;
-            if list.depenetration.contains(point) {
-                continue;
-            }
-            let first = list.by_point.partition_point(|&key| key < u64::from(point) << 32);
-            let of_point = list.by_point[first..].iter().take_while(|&&key| (key >> 32) as u32 == point);
-            for &key in of_point {
-                let contact = &list.point_face[key as u32 as usize];
+        for contact in list.point_face.contacts() {
+            let [point] = contact.points;
+            let is_inside = obstacles[..exits].binary_search_by_key(&point, |exit| exit.point).is_ok();
+            if is_inside && !list.depenetration.contains(point) {
                 let room = (contact.gap(&step) - contact.rest_gap(&step, [R::ONE])).to_f64();
                 let normal = Vector3::from(contact.normal.map(R::to_f64));
                 obstacles.push(Obstacle { point, collider: Some(list.collider), normal, room });

@@ -2,14 +2,13 @@
 //!
 //! Only elements with a point that has a new motion bound are searched. All other contacts stay.
 
-use std::sync::Mutex;
-
 use nalgebra::Vector3;
 
 use crate::contact::boundary::{ElementGroup, Pseudonormals};
 use crate::contact::bvh::Aabb;
 use crate::contact::collider::candidates::{OverlappingPair, for_candidates};
 use crate::contact::collider::contact::ColliderContact;
+use crate::contact::collider::contact_list::ContactList;
 use crate::contact::collider::contacts::{ColliderContacts, FoundContacts, FoundPairs};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::{Boxes, ColliderState};
@@ -18,6 +17,7 @@ use crate::contact::pair_filter::PairFilter;
 use crate::contact::time_step::ColliderStep;
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
+use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
 /// The input of a search. The collider's boxes are fitted to the candidate interval.
@@ -54,19 +54,6 @@ const GROUP_SIZE: usize = 2;
 /// Groups in a task.
 const GROUPS_PER_TASK: usize = 64;
 
-/// Calls `work` with the results of all tasks, in their order, so that the result does not depend on the threads.
-fn for_results<R>(tasks: &[Mutex<FoundContacts<R>>], mut work: impl FnMut(&FoundContacts<R>)) {
-    tasks.iter().filter_map(|task| task.lock().ok()).for_each(|found| work(&found));
-}
-
-/// Lists contacts by point, in the order in which they are listed: the point in the upper half, the index in the lower.
-fn sort_by_point<R>(contacts: &[ColliderContact<R, 1, 3>], by_point: &mut Vec<u64>) {
-    by_point.clear();
-    let key = |(index, contact): (u64, &ColliderContact<R, 1, 3>)| u64::from(contact.points[0]) << 32 | index;
-    by_point.extend((0..).zip(contacts).map(key));
-    by_point.sort_unstable();
-}
-
 impl<R: Real> ColliderQuery<'_, R> {
     /// Replaces the contacts of all elements with a new bound.
     pub fn run(&self, list: &mut ColliderContacts<R>, pool: &ThreadPool) {
@@ -75,52 +62,43 @@ impl<R: Real> ColliderQuery<'_, R> {
             boundary.triangles[group.triangles.clone()].iter().any(|face| self.has_new_bound(face))
                 || self.has_new_bound(&boundary.points[group.points.clone()])
         };
-        let ColliderContacts { tasks, point_face, edge_edge, face_point, by_point, depenetration, .. } = list;
+        let ColliderContacts { tasks, point_face, edge_edge, face_point, depenetration, .. } = list;
         let reach = self.reach();
         let groups = boundary.group_count(GROUP_SIZE);
         let chunks = groups.div_ceil(GROUPS_PER_TASK);
-        tasks.resize_with(tasks.len().max(chunks), Mutex::default);
+        tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
+        let own = DisjointSlice::new(tasks);
         pool.parallel_for(chunks, |task| {
-            // Uncontended: a task runs once.
-            let Ok(mut found) = tasks[task].lock() else { return };
+            // SAFETY: every task has its own.
+            #[allow(unsafe_code)]
+            let [found] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
             found.clear();
             let own = task * GROUPS_PER_TASK..((task + 1) * GROUPS_PER_TASK).min(groups);
             let new = own.map(|index| boundary.group(index, GROUP_SIZE)).filter(is_new);
-            new.for_each(|group| self.search_group(&group, &reach, &mut found));
-            self.find_contacts(&mut found);
+            new.for_each(|group| self.search_group(&group, &reach, found));
+            self.find_contacts(found);
         });
-        let tasks = &tasks[..chunks];
-        for_results(tasks, |found| depenetration.suspects.extend_from_slice(&found.suspects));
-        let points = Mutex::new((point_face, by_point));
-        let (edges, faces) = (Mutex::new(edge_edge), Mutex::new(face_point));
-        // Each list has a task of its own; the results are locked only while they are copied.
-        pool.parallel_for(3, |kind| match kind {
-            0 => {
-                let Ok(mut points) = points.lock() else { return };
-                let (points, by_point) = &mut *points;
-                self.replace(points, tasks, |found| &found.point_face);
-                sort_by_point(points, by_point);
-            }
-            1 => {
-                let Ok(mut edges) = edges.lock() else { return };
-                self.replace(&mut edges, tasks, |found| &found.edge_edge);
-            }
-            _ => {
-                let Ok(mut faces) = faces.lock() else { return };
-                self.replace(&mut faces, tasks, |found| &found.face_point);
-            }
-        });
+        let found = &tasks[..chunks];
+        found.iter().for_each(|found| depenetration.suspects.extend_from_slice(&found.suspects));
+        self.replace(point_face, found, |found| &found.point_face, pool);
+        self.replace(edge_edge, found, |found| &found.edge_edge, pool);
+        self.replace(face_point, found, |found| &found.face_point, pool);
     }
 
     /// Removes the contacts of points with new bounds, and adds those that the tasks have found.
     fn replace<const N: usize, const M: usize>(
         &self,
-        contacts: &mut Vec<ColliderContact<R, N, M>>,
-        tasks: &[Mutex<FoundContacts<R>>],
-        of: impl Fn(&FoundContacts<R>) -> &FoundPairs<R, N, M>,
+        contacts: &mut ContactList<R, N, M>,
+        found: &[FoundContacts<R>],
+        of: fn(&FoundContacts<R>) -> &FoundPairs<R, N, M>,
+        pool: &ThreadPool,
     ) {
-        contacts.retain(|contact| !self.has_new_bound(&contact.points));
-        for_results(tasks, |found| contacts.extend_from_slice(&of(found).contacts));
+        // A search of all points is frequent.
+        if self.cloth.points().all(|point| self.bounds_violated[point as usize]) {
+            contacts.clear();
+        }
+        contacts.remove(|contact| self.has_new_bound(&contact.points), pool);
+        contacts.append(found.len(), |task| &of(&found[task]).contacts, pool);
     }
 
     /// Whether any of these points has a new bound.

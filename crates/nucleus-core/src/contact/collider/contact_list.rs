@@ -1,0 +1,169 @@
+//! The contacts of one kind with a collider.
+//!
+//! A search replaces the contacts of points with new bounds: their places become vacant, and what it finds goes to the end.
+//! The order of contacts is that in which they were found, whenever vacant places are given up.
+
+use std::mem::MaybeUninit;
+use std::ops::{Deref, DerefMut};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::bytes::{Encode, Reader};
+use crate::contact::collider::contact::ColliderContact;
+use crate::math::Real;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
+
+/// A list of contacts, some of whose places are vacant.
+#[derive(Debug)]
+pub struct ContactList<R, const N: usize, const M: usize> {
+    places: Vec<ColliderContact<R, N, M>>,
+    vacant: usize,
+    /// Where what each search task has found begins.
+    firsts: Vec<u32>,
+}
+
+/// Places per task.
+pub const PLACES_PER_TASK: usize = 1024;
+
+impl<R, const N: usize, const M: usize> Default for ContactList<R, N, M> {
+    fn default() -> Self {
+        Self { places: Vec::new(), vacant: 0, firsts: Vec::new() }
+    }
+}
+
+/// All places, the vacant ones among them.
+impl<R, const N: usize, const M: usize> Deref for ContactList<R, N, M> {
+    type Target = [ColliderContact<R, N, M>];
+    fn deref(&self) -> &Self::Target {
+        &self.places
+    }
+}
+
+impl<R, const N: usize, const M: usize> DerefMut for ContactList<R, N, M> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.places
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
+    /// The number of contacts.
+    pub fn count(&self) -> usize {
+        self.places.len() - self.vacant
+    }
+
+    /// All contacts.
+    pub fn contacts(&self) -> impl Iterator<Item = &ColliderContact<R, N, M>> {
+        self.places.iter().filter(|contact| !contact.is_vacant())
+    }
+
+    /// The same, to work on.
+    pub fn contacts_mut(&mut self) -> impl Iterator<Item = &mut ColliderContact<R, N, M>> {
+        self.places.iter_mut().filter(|contact| !contact.is_vacant())
+    }
+
+    /// Removes all, keeps the capacity.
+    pub fn clear(&mut self) {
+        self.places.clear();
+        self.vacant = 0;
+    }
+
+    /// Removes contacts. Gives up vacant places where they are more than half of all.
+    pub fn remove(
+        &mut self,
+        is_removed: impl Fn(&ColliderContact<R, N, M>) -> bool + Sync,
+        pool: &ThreadPool,
+    ) {
+        let Self { places, vacant, .. } = self;
+        let (count, removed) = (places.len(), AtomicUsize::new(0));
+        let shared = DisjointSlice::new(places);
+        pool.parallel_for(count.div_ceil(PLACES_PER_TASK), |task| {
+            let own = task * PLACES_PER_TASK..count.min((task + 1) * PLACES_PER_TASK);
+            // SAFETY: tasks share no contact.
+            #[allow(unsafe_code)]
+            let own = unsafe { shared.run(own.start as u32..own.end as u32) };
+            let mut removed_here = 0;
+            for contact in own.iter_mut().filter(|contact| !contact.is_vacant() && is_removed(contact)) {
+                contact.vacate();
+                removed_here += 1;
+            }
+            removed.fetch_add(removed_here, Ordering::Relaxed);
+        });
+        *vacant += removed.into_inner();
+        if 2 * *vacant > places.len() {
+            places.retain(|contact| !contact.is_vacant());
+            *vacant = 0;
+        }
+    }
+
+    /// Appends what search tasks have `found`, in their order.
+    pub fn append<'a>(
+        &mut self,
+        tasks: usize,
+        found: impl Fn(usize) -> &'a [ColliderContact<R, N, M>] + Sync,
+        pool: &ThreadPool,
+    ) {
+        let Self { places, firsts, .. } = self;
+        let mut count = 0;
+        firsts.clear();
+        firsts.extend((0..tasks).map(|task| {
+            count += found(task).len() as u32;
+            count - found(task).len() as u32
+        }));
+        places.reserve(count as usize);
+        let spare = DisjointSlice::new(places.spare_capacity_mut());
+        pool.parallel_for(tasks, |task| {
+            let found = found(task);
+            // SAFETY: every task has places of its own.
+            #[allow(unsafe_code)]
+            let to = unsafe { spare.run(firsts[task]..firsts[task] + found.len() as u32) };
+            to.iter_mut().zip(found).for_each(|(to, contact)| *to = MaybeUninit::new(*contact));
+        });
+        // SAFETY: the tasks have set all of these places.
+        #[allow(unsafe_code)]
+        unsafe {
+            places.set_len(places.len() + count as usize);
+        }
+    }
+}
+
+impl<R: Real, const N: usize, const M: usize> Encode for ContactList<R, N, M> {
+    const SIZE: usize = 0;
+    fn encode(&self, out: &mut Vec<u8>) {
+        self.contacts().copied().collect::<Vec<_>>().encode(out);
+    }
+    fn decode(from: &mut Reader<'_>) -> Option<Self> {
+        Some(Self { places: Encode::decode(from)?, ..Self::default() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn contacts_stay_in_the_order_in_which_they_were_found(
+            searches in proptest::collection::vec((proptest::collection::vec(any::<bool>(), 20), proptest::collection::vec(0u32..20, 0..3000)), 1..8),
+        ) {
+            let pool = ThreadPool::new(2);
+            let (mut list, mut expected) = (ContactList::<f32, 1, 3>::default(), Vec::new());
+            for (is_new, points) in searches {
+                let found: Vec<_> = points.iter().map(|&point| ColliderContact::at([point])).collect();
+                let tasks: Vec<_> = found.chunks(7).collect();
+                list.remove(|contact| is_new[contact.points[0] as usize], &pool);
+                list.append(tasks.len(), |task| tasks[task], &pool);
+                expected.retain(|&point| !is_new[point as usize]);
+                expected.extend_from_slice(&points);
+                prop_assert_eq!(list.contacts().map(|contact| contact.points[0]).collect::<Vec<_>>(), &expected[..]);
+                prop_assert_eq!(list.count(), expected.len());
+                prop_assert!(list.len() <= 2 * expected.len().max(1) + points.len());
+            }
+            let mut bytes = Vec::new();
+            list.encode(&mut bytes);
+            let decoded = ContactList::<f32, 1, 3>::decode(&mut Reader::new(&bytes)).expect("it was encoded");
+            prop_assert_eq!(decoded.iter().map(|contact| contact.points[0]).collect::<Vec<_>>(), expected);
+        }
+    }
+}
