@@ -176,7 +176,7 @@ fn predict_trajectories<R: Real>(
         });
     }
     if !refresh.is_incremental() {
-        cache.carry_anchors(&state.anchor, &state.start, interval_start);
+        cache.carry_anchors(&state.anchor, &state.start, interval_start, pool);
         interval_start.clone_from(&state.start);
     }
 }
@@ -197,8 +197,9 @@ fn find_candidates<R: Real>(
     let margin = widest as f32 * 0.5 * (1.0 + 1e-5);
     cloth_contacts.update_bounds(&input, margin, refresh, pool);
     if !refresh.is_incremental() && cloth_contacts.untangling.may_exist() {
-        let ClothContacts { elements, materials, untangling, .. } = cloth_contacts;
-        find_intersections(elements, materials, &input, untangling);
+        let ClothContacts { elements, materials, untangling, buffers, .. } = cloth_contacts;
+        let bounds = (&buffers.bounds, &buffers.group_bounds[..]);
+        find_intersections(elements, bounds, materials, &input, untangling, pool);
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;

@@ -140,12 +140,18 @@ impl<R: Real> ContactCache<R> {
 
     /// Carries friction anchors over into a candidate interval that begins at `start`; the last one began at
     /// `interval_start`.
-    pub fn carry_anchors(&mut self, origins: &[[f64; 3]], start: &[Row4<R>], interval_start: &[Row4<R>]) {
+    pub fn carry_anchors(
+        &mut self,
+        origins: &[[f64; 3]],
+        start: &[Row4<R>],
+        interval_start: &[Row4<R>],
+        pool: &ThreadPool,
+    ) {
         let Self { point_face, edge_edge, point_edge, point_point } = self;
-        point_face.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
-        edge_edge.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
-        point_edge.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
-        point_point.iter_mut().for_each(|contact| contact.carry_anchor(origins, start, interval_start));
+        point_face.for_each(pool, |contact| contact.carry_anchor(origins, start, interval_start));
+        edge_edge.for_each(pool, |contact| contact.carry_anchor(origins, start, interval_start));
+        point_edge.for_each(pool, |contact| contact.carry_anchor(origins, start, interval_start));
+        point_point.for_each(pool, |contact| contact.carry_anchor(origins, start, interval_start));
     }
 
     /// The number of contacts without certificate. Marks their cloths.

@@ -196,6 +196,12 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         self.cloth.finish(blocks);
     }
 
+    /// Calls `work` with each contact, all tasks in parallel: it may move no point.
+    pub fn for_each(&mut self, pool: &ThreadPool, work: impl Fn(&mut ClothContact<R, N, M>) + Sync) {
+        self.free_points.for_tasks(pool, |task| task.contacts_mut().iter_mut().for_each(&work));
+        self.cloth.for_tasks(pool, |task| task.contacts_mut().iter_mut().for_each(&work));
+    }
+
     /// Calls `work` with each contact, tasks in parallel. Returns how often it answered `true`.
     pub fn count(
         &mut self,

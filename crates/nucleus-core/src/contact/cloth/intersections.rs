@@ -1,31 +1,47 @@
 //! Detection of intersections: finds the edges that pierce faces, groups them into contours by union-find, and
 //! chooses a correction for each.
 
+use crate::contact::cloth::contacts::GROUPS_PER_TASK;
+use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::ElementGroups;
+use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::search::SearchInput;
 use crate::contact::cloth::untangling::{Correction, Intersection, Untangling, Wing, pierces};
 use crate::contact::material::ContactMaterial;
 use crate::contact::pair_filter::PairFilter;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub};
 use crate::model::ClothModel;
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
 
 /// Finds all intersections at the start of the time step: the end is not certified yet, and what would pass on the way there
 /// is not to be untangled but stopped. Valid while the boxes of the last search are.
 pub fn find_intersections<R: Real>(
     elements: &ElementGroups,
+    bounds: (&ElementBounds, &[GroupBounds]),
     materials: &[Option<ContactMaterial<R>>],
     input: &SearchInput<'_, R>,
     untangling: &mut Untangling,
+    pool: &ThreadPool,
 ) {
     untangling.is_search_due.fill(false);
-    untangling.intersections.clear();
     let SearchInput { cloths, anchors, displacement: [displacement, _], strength, filter, .. } = *input;
-    let search = IntersectionSearch { elements, materials, cloths, anchors, displacement, strength, filter };
-    for group in 0..elements.groups.len() as u32 {
-        elements.query(&elements.swept_bound(group), |other| {
-            search.find_between(group, other, &mut untangling.intersections)
-        });
-    }
+    let search =
+        IntersectionSearch { elements, bounds, materials, cloths, anchors, displacement, strength, filter };
+    let groups = elements.groups.len();
+    let mut found = vec![Vec::new(); groups.div_ceil(GROUPS_PER_TASK)];
+    let (tasks, results) = (found.len(), DisjointSlice::new(&mut found));
+    pool.parallel_for(tasks, |task| {
+        // SAFETY: every task has its own.
+        #[allow(unsafe_code)]
+        let [found] = (unsafe { results.run(task as u32..task as u32 + 1) }) else { return };
+        for group in task * GROUPS_PER_TASK..groups.min((task + 1) * GROUPS_PER_TASK) {
+            let swept_bound = elements.swept_bound(group as u32);
+            elements.query(&swept_bound, |other| search.find_between(group as u32, other, found));
+        }
+    });
+    untangling.intersections.clear();
+    found.iter().for_each(|found| untangling.intersections.extend_from_slice(found));
     if untangling.any() {
         untangling.mark_neighbourhood(cloths);
         untangling.choose_corrections(cloths);
@@ -38,6 +54,7 @@ pub fn find_intersections<R: Real>(
 
 struct IntersectionSearch<'a, R> {
     elements: &'a ElementGroups,
+    bounds: (&'a ElementBounds, &'a [GroupBounds]),
     materials: &'a [Option<ContactMaterial<R>>],
     cloths: &'a [ClothModel<R>],
     anchors: &'a [[f64; 3]],
@@ -61,20 +78,23 @@ impl<R: Real> IntersectionSearch<'_, R> {
         };
         let edges = &self.cloths[ours.cloth as usize].boundary.edges[ours.group.edges.clone()];
         let faces = &self.cloths[theirs.cloth as usize].boundary.triangles[theirs.group.triangles.clone()];
-        for &edge in edges.iter().filter(|edge| has_full_strength(*edge)) {
-            for &face in faces.iter().filter(|face| has_full_strength(*face)) {
+        let (bounds, of_groups) = self.bounds;
+        let [ours, theirs] = [group, other].map(|group| &of_groups[group as usize]);
+        ours.edges.for_each_overlap(&self.elements.swept_boxes[other as usize], |edge| {
+            let edge = edges[edge];
+            if !has_full_strength(&edge) {
+                return;
+            }
+            theirs.triangles.for_each_overlap(&bounds.bound(&edge, 0.0), |face| {
+                let face = faces[face];
                 let is_joined =
                     face.iter().any(|point| edge.contains(point)) || self.filter.excludes(&edge, &face);
-                if !is_joined && pierces(edge.map(position), face.map(position)) {
-                    found.push(Intersection {
-                        edge,
-                        wings: [edge[0]; 2],
-                        face,
-                        correction: Correction::None,
-                    });
+                if !is_joined && has_full_strength(&face) && pierces(edge.map(position), face.map(position)) {
+                    let wings = [edge[0]; 2];
+                    found.push(Intersection { edge, wings, face, correction: Correction::None });
                 }
-            }
-        }
+            });
+        });
     }
 
     /// Chooses corrections between two cloths: the first belongs on the side of the second where most of it is.
