@@ -105,10 +105,10 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         let Self { places, firsts, .. } = self;
         let mut count = 0;
         firsts.clear();
-        firsts.extend((0..tasks).map(|task| {
+        for task in 0..tasks {
+            firsts.push(count);
             count += found(task).len() as u32;
-            count - found(task).len() as u32
-        }));
+        }
         places.reserve(count as usize);
         let spare = DisjointSlice::new(places.spare_capacity_mut());
         pool.parallel_for(tasks, |task| {
