@@ -80,6 +80,12 @@ impl<R: Real> ColliderQuery<'_, R> {
         });
         let found = &tasks[..chunks];
         found.iter().for_each(|found| depenetration.suspects.extend_from_slice(&found.suspects));
+        // A search of all points is frequent, and keeps nothing.
+        if self.cloth.points().all(|point| self.bounds_violated[point as usize]) {
+            point_face.clear();
+            edge_edge.clear();
+            face_point.clear();
+        }
         self.replace(point_face, found, |found| &found.point_face, pool);
         self.replace(edge_edge, found, |found| &found.edge_edge, pool);
         self.replace(face_point, found, |found| &found.face_point, pool);
@@ -93,10 +99,6 @@ impl<R: Real> ColliderQuery<'_, R> {
         of: fn(&FoundContacts<R>) -> &FoundPairs<R, N, M>,
         pool: &ThreadPool,
     ) {
-        // A search of all points is frequent.
-        if self.cloth.points().all(|point| self.bounds_violated[point as usize]) {
-            contacts.clear();
-        }
         contacts.remove(|contact| self.has_new_bound(&contact.points), pool);
         contacts.append(found.len(), |task| &of(&found[task]).contacts, pool);
     }
