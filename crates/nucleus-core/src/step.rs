@@ -113,6 +113,11 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
             solver.contact.invalidate_bounds(row as usize);
         }
     }
+    for (cloth, settings) in solver.model.cloths.iter().zip(&frame.cloths) {
+        if settings.is_driven {
+            cloth.points().for_each(|row| solver.state.hold(row));
+        }
+    }
     record_start_gaps(&solver.model, &mut solver.state, &mut solver.contact, frame);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
     for (collider, motion) in solver.contact.collider_states.iter_mut().zip(&frame.colliders) {

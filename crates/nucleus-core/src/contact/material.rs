@@ -250,7 +250,8 @@ impl<R: Real> ContactMaterial<R> {
         ours + theirs
     }
 
-    /// The larger coefficient of restitution at a contact.
+    /// The larger coefficient of restitution at a contact, at most 1: above it, every contact would add energy, and cloth
+    /// in contact with itself would gain speed without bound.
     #[inline(always)]
     pub fn bounce_at<const N: usize, const M: usize>(
         &self,
@@ -258,7 +259,8 @@ impl<R: Real> ContactMaterial<R> {
         points: ContactPoints<'_, R, N, M>,
     ) -> R {
         let [ours, theirs] = per_side(&maps.bounce, self.bounce, points);
-        if ours > theirs { ours } else { theirs }
+        let larger = if ours > theirs { ours } else { theirs };
+        if larger > R::ONE { R::ONE } else { larger }
     }
 
     /// The share of a collision that is carried out at a contact.

@@ -43,6 +43,15 @@ impl<R: Real> State<R> {
         is_moved_elsewhere
     }
 
+    /// Holds a point that has no pin where it is.
+    pub fn hold(&mut self, row: u32) {
+        let row = row as usize;
+        if self.displacement[row].0[3] > R::ZERO {
+            self.displacement[row].0[3] = R::ZERO;
+            self.velocity[row] = Row4::ZERO;
+        }
+    }
+
     /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible.
     pub fn store_step_start(&mut self, h: f64, can_touch: bool, pool: &ThreadPool) {
         let Self {

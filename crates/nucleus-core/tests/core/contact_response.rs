@@ -66,8 +66,10 @@ fn two_beads_in_a_head_on_collision_follow_newtons_law_of_restitution() {
         ([1.0, 3.0], [2.0, 0.0], [0.5, 0.0]),
         ([5.0, 1.0], [1.0, -2.0], [0.2, 0.8]),
         ([1.0, 2.0], [3.0, 0.0], [0.0, 0.0]),
+        // More than all of the speed would be energy from nowhere.
+        ([1.0, 2.0], [3.0, 0.0], [40.0, 0.0]),
     ] {
-        let restitution = f64::max(bounce[0], bounce[1]);
+        let restitution = f64::max(bounce[0], bounce[1]).min(1.0);
         let [m, n] = masses;
         let common = (m * speeds[0] + n * speeds[1]) / (m + n);
         let parting = restitution * (speeds[0] - speeds[1]) / (m + n);

@@ -64,7 +64,7 @@ node_table! {
     "Collisions" {
         /// Thickness of each side of the surface. Two objects touch at the sum of theirs. Default: computed from the size of the mesh.
         THICKNESS: f64 = float("thickness", "thss", 0.1).min(0.0).soft(0.0, 1.0).unit("scene units").solved("nucleus_core::contact::material");
-        /// Share of the normal speed that a contact returns. The larger value of the two sides counts.
+        /// Share of the normal speed that a contact returns. The larger value of the two sides counts, and at most 1.
         BOUNCE: f64 = float("bounce", "boce", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::restitution");
         /// Coefficient of friction. The values of both sides are added.
         FRICTION: f64 = float("friction", "fron", ClothFrame::DEFAULT.friction).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::response");

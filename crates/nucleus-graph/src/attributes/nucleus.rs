@@ -34,7 +34,7 @@ node_table! {
         PLANE_ORIGIN: [f64; 3] = vector("planeOrigin", "npor", [0.0, 0.0, 0.0], ["npox", "npoy", "npoz"]).unit("scene units").solved("nucleus_core::contact::ground");
         /// Normal of the ground plane, of any length. Objects stay on the side that it points to.
         PLANE_NORMAL: [f64; 3] = vector("planeNormal", "npun", [0.0, 1.0, 0.0], ["npnx", "npny", "npnz"]).solved("nucleus_core::contact::ground");
-        /// Share of the normal speed that a contact with the ground plane returns.
+        /// Share of the normal speed that a contact with the ground plane returns, at most 1.
         PLANE_BOUNCE: f64 = float("planeBounce", "npbc", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::restitution");
         /// Friction of the ground plane, added to that of the object.
         PLANE_FRICTION: f64 = float("planeFriction", "npfr", 0.1).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::response");

@@ -11,7 +11,7 @@ node_table! {
     "General" {
         /// Number of particles.
         COUNT: i64 = int("count", "cnt", 0).output().elsewhere("an output that only Maya's expressions and shaders read");
-        /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh.
+        /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh, and particles stay where they are, and none are emitted. Other cloth collides with both.
         IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::input_mesh");
     }
     "Time Attributes" {

@@ -1,7 +1,8 @@
-//! Settings that have no effect because another setting switches them off: a warning says which.
+//! Settings that have no effect because another setting switches them off, or that count as less than they say: a warning
+//! says which.
 
 use crate::attributes::{Attribute, Choice, Key, n_base, n_cloth, nucleus};
-use crate::graph::NodeId;
+use crate::graph::{NodeId, Setting};
 
 use super::compiler::Compiler;
 use super::units::CLASSIC;
@@ -146,6 +147,19 @@ impl Compiler<'_> {
             let place = self.scene.source.place(&format!("{}.{}", node.name(), row.name));
             let message = format!("`{}` of `{}` has no effect: {because}", row.name, node.name());
             self.findings.warning(&place, message).help(*help);
+        }
+    }
+
+    /// Warns of a bounce above 1, which counts as 1.
+    pub(super) fn warn_of_bounce(&mut self, object: NodeId, key: &Key<f64>) {
+        let node = self.scene.graph.node(object);
+        let largest = node.settings().get(key.row.name).map_or(0.0, Setting::largest);
+        if largest > 1.0 {
+            let place = self.scene.source.place(&format!("{}.{}", node.name(), key.row.name));
+            let message = format!("`{}` of `{}` is {largest}, and counts as 1", key.row.name, node.name());
+            let warning = self.findings.warning(&place, message);
+            warning
+                .help("above 1 every contact would add energy; a field or `localForce` drives objects apart");
         }
     }
 }

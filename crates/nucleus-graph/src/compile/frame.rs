@@ -143,7 +143,7 @@ impl EvaluationInterval<'_> {
     fn active_frame(&self, cloth: &ClothSource) -> ClothFrame {
         let frame =
             if cloth.is_particles { self.particle_frame(cloth.node) } else { self.cloth_frame(cloth) };
-        ClothFrame { is_driven: self.plays(cloth), ..frame }
+        ClothFrame { is_driven: self.plays(cloth) || self.rests(cloth), ..frame }
     }
 
     fn cloth_frame(&self, cloth: &ClothSource) -> ClothFrame {

@@ -48,7 +48,7 @@ impl EvaluationInterval<'_> {
         let held: BTreeSet<_> = pins.iter().map(|pin| (pin.cloth, pin.point)).collect();
         for (cloth, source) in (0..).map(ClothId).zip(&self.nucleus.cloths) {
             let Some(followed) = &source.followed else { continue };
-            let is_dynamic = self.to.get(source.node, &particle::IS_DYNAMIC);
+            let is_dynamic = !self.rests(source);
             let locks = self.to.get(source.node, &n_cloth::INPUT_ATTRACT_METHOD) == LOCKS;
             let strength = self.input_attract(source).strength;
             if is_dynamic && (!locks || strength <= 0.0) {
@@ -65,6 +65,11 @@ impl EvaluationInterval<'_> {
                 }
             }
         }
+    }
+
+    /// Whether an object is not dynamic: cloth follows its input mesh, and particles stay where they are.
+    pub(super) fn rests(&self, source: &ClothSource) -> bool {
+        !self.to.get(source.node, &particle::IS_DYNAMIC)
     }
 
     /// The points of an input mesh in metres.

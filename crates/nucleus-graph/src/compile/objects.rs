@@ -46,6 +46,7 @@ impl Compiler<'_> {
         self.check_widths(&objects);
         if !self.objects.is_empty() {
             units::check_time_input(self.scene, self.program.node, self.findings);
+            self.warn_of_bounce(self.program.node, &nucleus::PLANE_BOUNCE);
         }
         CompiledNucleus { program: self.program, objects: self.objects, mass: self.mass }
     }
@@ -58,6 +59,7 @@ impl Compiler<'_> {
         let warp = self.warp(id, mesh, rest.as_ref().unwrap_or(&surface))?;
         self.check_pressure(id, &surface);
         self.warn_of_contradictions(id);
+        self.warn_of_bounce(id, &n_base::BOUNCE);
         let given = surface.positions.len();
         let tearing = self.tearing(id, mesh, &surface);
         let [input, rest] =
@@ -189,6 +191,7 @@ impl Compiler<'_> {
         let default_thickness = default_thickness(&surface, COLLIDER_SHARE);
         let motion = self.collider_motion(mesh)?;
         self.warn_of_contradictions(id);
+        self.warn_of_bounce(id, &n_base::BOUNCE);
         self.warn_of_recorded_collider(id, mesh);
         let surface = self.program.units.surface(surface);
         let (points, faces) = (surface.positions.len(), surface.faces.clone());

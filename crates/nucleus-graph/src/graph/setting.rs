@@ -75,6 +75,16 @@ impl Setting {
         curves.into_iter().flatten().any(|curve| !curve.is_constant())
     }
 
+    /// The largest magnitude of a number over all frames; 0 of what is not a number.
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::Fixed(Value::Float(x)) => x.abs(),
+            Self::Fixed(Value::Int(x)) => (*x as f64).abs(),
+            Self::Keyed(curve) => curve.max_abs(),
+            Self::Fixed(_) | Self::Parts(_) => 0.0,
+        }
+    }
+
     /// Whether a number is nonzero at any frame.
     pub fn is_ever_nonzero(&self) -> bool {
         match self {

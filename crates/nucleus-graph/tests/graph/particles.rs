@@ -37,6 +37,35 @@ fn particles_start_where_their_node_says_and_fall() {
 }
 
 #[test]
+fn particles_that_are_not_dynamic_stay_where_they_are_and_none_are_emitted() {
+    let nodes = |dynamic: &str| {
+        format!(
+            r#""n": nucleus(), "e": pointEmitter(target: "q", rate: 240),
+            "q": nParticle(position: [(1, 2, 3)], velocity: [(0, 0, 24)], isDynamic: {dynamic})"#
+        )
+    };
+    let at_rest = program(&of_nodes(&nodes("false"), ""));
+    assert_eq!(places(&at_rest, 8), [[1.0, 2.0, 3.0]]);
+    // They are let go at frame 3: the interval that ends there is the first in which they fall.
+    let let_go = program(&of_nodes(&nodes("keys([(0, false), (3, true)])"), ""));
+    assert_eq!(places(&let_go, 1), [[1.0, 2.0, 3.0]]);
+    let fallen = places(&let_go, 6);
+    assert!(fallen.len() > 10 && fallen[0][1] < 2.0, "{fallen:?}");
+}
+
+#[test]
+fn a_bounce_above_one_is_warned_of() {
+    let nodes = r#""n": nucleus(usePlane: true, planeBounce: keys([(1, 0), (9, 4)])), "q": nParticle(bounce: 1),
+        "m": polyPlane(), "c": nCloth(inputMesh: "m", bounce: 2.5), "r": nRigid(inputMesh: "m", bounce: 3)"#;
+    let mut found = warnings(&of_nodes(nodes, ""));
+    found.retain(|warning| warning.contains("counts as 1"));
+    found.sort();
+    let expected = [("bounce", "c", "2.5"), ("bounce", "r", "3"), ("planeBounce", "n", "4")]
+        .map(|(attribute, node, value)| format!("`{attribute}` of `{node}` is {value}, and counts as 1"));
+    assert_eq!(found, expected);
+}
+
+#[test]
 fn an_initial_position_has_precedence_over_a_position() {
     let nodes =
         r#""n": nucleus(), "q": nParticle(position: [(1, 2, 3)], pos0: [(7, 8, 9)], vel0: [(0, 0, 0)])"#;

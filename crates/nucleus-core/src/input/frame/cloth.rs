@@ -48,8 +48,8 @@ pub struct ClothFrame {
     pub local_wind: Vector3<f64>,
     /// Whether it collides with colliders and the ground plane.
     pub collide: bool,
-    /// Whether pins move all of its points: other cloth collides with it, and it has no contacts with colliders, with the
-    /// ground plane, with itself, or with another such cloth.
+    /// Whether pins move all of its points, and points without a pin stay where they are: other cloth collides with it, and
+    /// it has no contacts with colliders, with the ground plane, with itself, or with another such cloth.
     pub is_driven: bool,
     /// Thickness in metres; two objects touch at the sum of theirs.
     pub thickness: f64,

@@ -174,7 +174,8 @@ impl EvaluationInterval<'_> {
         kept.emitters.resize(self.nucleus.emitters.len(), EmitterState::default());
         let mut births = Vec::new();
         for (emitter, at) in self.nucleus.emitters.iter().zip(0..) {
-            if !self.plays(&self.nucleus.cloths[emitter.cloth.index()]) {
+            let target = &self.nucleus.cloths[emitter.cloth.index()];
+            if !self.plays(target) && !self.rests(target) {
                 self.emit((emitter, at), kept, seconds, &mut births);
             }
         }
