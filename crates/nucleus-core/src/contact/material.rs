@@ -104,15 +104,19 @@ impl<R: Real> ContactMaterial<R> {
         })
     }
 
-    /// A cloth with a collider; `None` where they do not collide. `max_thickness_factor` holds the largest factor of
-    /// each thickness map.
+    /// A cloth with a collider; `None` where they do not collide: a collider has effect on the same layer and on higher ones,
+    /// less than `range` away. `max_thickness_factor` holds the largest factor of each thickness map.
     pub fn for_collider(
         cloth: &ClothFrame,
         collider: &ColliderFrame,
         max_thickness_factor: [f64; 2],
+        range: f64,
     ) -> Option<Self> {
         let strength = [cloth.collide_strength, collider.collide_strength].map(|side| side.min(1.0));
-        let is_off = !cloth.collide || cloth.is_driven || !collider.collide;
+        let above = cloth.layer - collider.layer;
+        let is_in_range = above == 0.0 || (above > 0.0 && above < range);
+        let is_off = !cloth.collide || cloth.is_driven || !collider.collide || !is_in_range;
+        let flat = |elements: Elements| elements != Elements::Points;
         if is_off || strength.iter().any(|&side| side <= 0.0) {
             return None;
         }
@@ -128,10 +132,10 @@ impl<R: Real> ContactMaterial<R> {
             bounce: per_side([cloth.bounce, collider.bounce]),
             strength: per_side(strength),
             untangling_rate: 1.0,
-            depenetrates: collider.trapped_check,
+            depenetrates: collider.trapped_check && collider.elements == Elements::Faces,
             mobility: [R::ONE, R::ZERO],
-            elements: [cloth.elements, Elements::Faces],
-            edges: true,
+            elements: [cloth.elements, collider.elements],
+            edges: flat(cloth.elements) && flat(collider.elements),
             grips: false,
         })
     }
@@ -143,9 +147,10 @@ impl<R: Real> ContactMaterial<R> {
             friction: ground.friction,
             stickiness: ground.stickiness,
             bounce: ground.bounce,
+            layer: cloth.layer,
             ..ColliderFrame::default()
         };
-        let material = Self::for_collider(cloth, &plane, [max_thickness_factor, 1.0])?;
+        let material = Self::for_collider(cloth, &plane, [max_thickness_factor, 1.0], f64::INFINITY)?;
         Some(Self { thickness: cloth.thickness * max_thickness_factor, ..material })
     }
 

@@ -168,7 +168,9 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
     let (cloths, max_thickness_factor) = (&frame.cloths, &solver.contact.material_maps.max_thickness_factor);
     let at_colliders = |cloth: usize| {
         let factors = |collider| solver.contact.material_maps.max_thickness_factors(cloth, collider);
-        let with = |(at, collider)| ContactMaterial::<R>::for_collider(&cloths[cloth], collider, factors(at));
+        let with = |(at, collider)| {
+            ContactMaterial::<R>::for_collider(&cloths[cloth], collider, factors(at), frame.layer_range)
+        };
         frame.colliders.iter().enumerate().filter_map(with).collect::<Vec<_>>()
     };
     let on_ground = |cloth: usize| {

@@ -405,3 +405,59 @@ fn a_point_in_depenetration_from_a_plane_falls_freely_once_the_plane_is_gone() {
     let free = without.gravity.y * without.duration;
     assert!((fallen / free - 1.0).abs() < 1e-5, "{fallen} m/s, free fall is {free} m/s");
 }
+
+/// The height of the middle of a sheet of one face that fell 5 cm onto a box, whose top is at 0, for half a second. The box
+/// is narrower than the sheet, or wider.
+fn fallen_onto_a_box(is_narrow: bool, cloth: ClothFrame, collider: ColliderFrame) -> f64 {
+    let mut sheet = grid(2, 2, Vec3::x(), Vec3::z());
+    sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.5, 0.05, -0.5));
+    let half = if is_narrow { 0.2 } else { 0.8 };
+    let corner = Vec3::new(half, 0.0, half);
+    let thin = Cloth::new(sheet, Mass::PerArea(0.2), ClothLists { shear: true, ..LINKS });
+    let mut solver = solver(vec![thin], vec![cuboid(-corner - Vec3::y() * 0.3, corner)]);
+    let cloths =
+        vec![ClothFrame { thickness: THICKNESS, shear_resistance: 20.0, bend_resistance: 20.0, ..cloth }];
+    let input = FrameInput { cloths, colliders: vec![collider], ..frame(3, physical(96.0)) };
+    (0..12).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    (0..4).map(|k| solver.point(FIRST, k).y).sum::<f64>() / 4.0
+}
+
+// EVIDENCE: N2.3-3  points, edges and faces collide as the flags of both sides say
+#[test]
+fn cloth_and_collider_touch_with_the_elements_that_their_flags_name() {
+    use Elements::{Edges, Faces, Points};
+    // Corners and edges of a narrow box meet edges and the face of the sheet; points of the sheet meet faces of a wide one.
+    for (is_narrow, cloth, collider, rests) in [
+        (true, Faces, Faces, true),
+        (true, Faces, Points, true),
+        (true, Faces, Edges, true),
+        (true, Points, Faces, false),
+        (false, Points, Faces, true),
+        (false, Faces, Points, false),
+    ] {
+        let height = fallen_onto_a_box(
+            is_narrow,
+            ClothFrame { elements: cloth, ..still() },
+            ColliderFrame { collide: true, elements: collider, ..ColliderFrame::default() },
+        );
+        let expected = if rests { height > 0.5 * THICKNESS } else { height < -0.5 };
+        assert!(expected, "narrow: {is_narrow}, {cloth:?} on {collider:?}: {height}");
+    }
+}
+
+#[test]
+fn a_collider_holds_cloth_of_its_layer_and_of_higher_ones_within_the_range() {
+    for (cloth, collider, rests) in
+        [(0.0, 0.0, true), (1.5, 1.5, true), (3.0, 0.0, true), (4.0, 0.0, false), (0.0, 1.0, false)]
+    {
+        let height = fallen_onto_a_box(
+            false,
+            ClothFrame { layer: cloth, ..still() },
+            ColliderFrame { collide: true, layer: collider, ..ColliderFrame::default() },
+        );
+        let expected = if rests { height > 0.5 * THICKNESS } else { height < -0.5 };
+        assert!(expected, "layer {cloth} on {collider}: {height}");
+    }
+}

@@ -72,7 +72,7 @@ node_table! {
         STICKINESS: f64 = float("stickiness", "stck", 0.0).soft(0.0, 2.0).solved("nucleus_core::contact::response");
         /// Strength of contacts. The values of both sides are multiplied. From 1 on nothing passes through; below 1 objects may pass through each other; at 0 there is no contact.
         COLLIDE_STRENGTH: f64 = float("collideStrength", "clst", 1.0).soft(0.0, 1.0).solved("nucleus_core::contact::material");
-        /// Elements that collide with other objects: points; points and edges; points, edges and faces.
+        /// Elements that collide with other objects: points; points and edges; points, edges and faces. Unless both sides collide by faces, they may pass through each other; particles collide with the faces of a collider at any value.
         COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 3, &[(1, "Vertex"), (2, "Edge"), (3, "Face")]).solved("nucleus_graph::compile::thickness");
         /// Elements that collide in self-collision. Default: the full surface, which nothing passes through; in Classic, the value that Maya sets at creation.
         SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "Full Surface")]).solved("nucleus_graph::compile::thickness");
@@ -80,7 +80,7 @@ node_table! {
         COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::material");
         /// Enables self-collision. A liquid collides with itself only where it is given.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::thickness");
-        /// Objects whose layers differ by less than `collisionLayerRange` collide. In a contact, the object in the lower layer is the heavier one.
+        /// Objects whose layers differ by less than `collisionLayerRange` collide. In a contact, the object in the lower layer is the heavier one. A collider acts on objects of its own layer and of higher ones.
         COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::material");
         /// Colour of the thickness in Maya's viewport.
         DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]).elsewhere("only Maya's viewport draws it");

@@ -251,8 +251,14 @@ fn collide(program: &Program, a: usize, b: usize, moment: &EvalContext) -> bool 
         return self_collides(moment, node_a);
     }
     let collide = moment.get(node_a, &n_base::COLLIDE) && moment.get(node_b, &n_base::COLLIDE);
-    let are_cloths = [kind_a, kind_b].iter().all(|kind| matches!(kind, ObjectKind::Cloth(_)));
     let range = moment.get(nucleus_a.node(), &nucleus::COLLISION_LAYER_RANGE);
-    let layers = moment.get(node_a, &n_base::COLLISION_LAYER) - moment.get(node_b, &n_base::COLLISION_LAYER);
-    nucleus_a.node() == nucleus_b.node() && collide && !(are_cloths && layers.abs() >= range)
+    let [layer_a, layer_b] = [node_a, node_b].map(|node| moment.get(node, &n_base::COLLISION_LAYER));
+    let is_in_range = match [kind_a, kind_b] {
+        [ObjectKind::Cloth(_), ObjectKind::Cloth(_)] => (layer_a - layer_b).abs() < range,
+        // A collider has effect on its own layer and on higher ones.
+        [ObjectKind::Cloth(_), ObjectKind::Collider(_)] => layer_a >= layer_b && layer_a - layer_b < range,
+        [ObjectKind::Collider(_), ObjectKind::Cloth(_)] => layer_b >= layer_a && layer_b - layer_a < range,
+        [ObjectKind::Collider(_), ObjectKind::Collider(_)] => false,
+    };
+    nucleus_a.node() == nucleus_b.node() && collide && is_in_range
 }

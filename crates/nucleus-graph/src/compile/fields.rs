@@ -3,6 +3,8 @@
 //! A field acts on the objects that it is connected to. Lengths, speeds and accelerations of fields are in scene units, as
 //! in Maya's classic dynamics; forces are kilograms times scene units per second squared.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{Matrix3, Vector3};
 use nucleus_core::{ClothId, Field, FieldKind, Noise, Reach, Volume, VolumeAxis, VolumeShape};
 
@@ -11,7 +13,9 @@ use crate::attributes::{
     Choice, Key, NodeType, air_field, drag_field, field, gravity_field, newton_field, particle, radial_field,
     turbulence_field, uniform_field, volume_axis_field, vortex_field,
 };
+use crate::diagnostic::Findings;
 use crate::graph::{EvalContext, NodeId};
+use crate::scene::document::Scene;
 
 use super::compiler::Compiler;
 use super::force_fields::ramp_at;
@@ -37,6 +41,18 @@ impl Compiler<'_> {
             }
         }
         fields
+    }
+}
+
+/// Warns of fields that are connected to no object.
+pub(super) fn warn_of_idle_fields(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) {
+    let graph = &scene.graph;
+    for (id, node) in graph.of_type(&field::FIELD).filter(|(id, _)| !broken.contains(id)) {
+        if graph.targets(id, &field::OUTPUT_FORCE).next().is_none() {
+            let message = format!("`{}` acts on nothing", node.name());
+            let warning = findings.warning(&scene.source.place(node.name()), message);
+            warning.help("name the objects it acts on: `target: \"cloth1\"`");
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use nucleus_core::{
 };
 
 use crate::animation::Affine;
-use crate::attributes::{Key, n_base, n_cloth, n_rigid, nucleus};
+use crate::attributes::{Key, n_base, n_cloth, n_rigid, nucleus, particle};
 use crate::graph::NodeId;
 use crate::scene::document::TimeSpan;
 
@@ -226,10 +226,14 @@ impl EvaluationInterval<'_> {
         let (node, to) = (collider.node, &self.to);
         let (start, end) = self.collider_motion(collider);
         let thickness = self.thickness(node, collider.default_thickness);
+        let motion = ColliderFrame { start, end, ..ColliderFrame::default() };
+        if !to.get(node, &particle::IS_DYNAMIC) {
+            return ColliderFrame { collide: false, ..motion };
+        }
         ColliderFrame {
-            start,
-            end,
             collide: to.get(node, &n_base::COLLIDE),
+            elements: elements(to.get(node, &n_base::COLLISION_FLAG)),
+            layer: to.get(node, &n_base::COLLISION_LAYER),
             thickness,
             friction: to.get(node, &n_base::FRICTION),
             stickiness: to.get(node, &n_base::STICKINESS),
@@ -240,6 +244,7 @@ impl EvaluationInterval<'_> {
             field: self.force_field(node, 1.0),
             point_field: self.point_field(node, thickness),
             wind_field: self.wind_field(node),
+            ..motion
         }
     }
 

@@ -162,6 +162,7 @@ fn compile_nuclei(
         let compiled = Compiler::new(scene, nucleus, broken, geometry, previous, findings).compile();
         all.push(compiled);
     }
+    fields::warn_of_idle_fields(scene, broken, findings);
     if all.iter().any(|compiled| !compiled.objects.is_empty()) {
         all.retain(|compiled| !compiled.objects.is_empty());
     } else {

@@ -318,13 +318,26 @@ fn a_collider_moves_from_frame_to_frame() {
 fn a_collider_that_never_moves_has_no_positions() {
     let still = program(
         r#""n": nucleus(), "box": polyCube(tx: 3), "c": nRigid(inputMesh: "box", friction: 0.7, thickness: 1e-3,
-            stickiness: 0.2, collideStrength: 0.9, pushOut: -1, trappedCheck: false)"#,
+            stickiness: 0.2, collideStrength: 0.9, pushOut: -1, trappedCheck: false, collisionFlag: edge,
+            collisionLayer: 2)"#,
     );
     let collider = &still.first_input().colliders[0];
     assert!(collider.start.is_empty() && collider.end.is_empty() && collider.collide);
     assert_eq!((collider.friction, collider.stickiness, collider.collide_strength), (0.7, 0.2, 0.9));
     assert_eq!((collider.push_out, collider.trapped_check), (PushOut { share: -1.0, radius: 4e-3 }, false));
+    assert_eq!((collider.elements, collider.layer), (Elements::Edges, 2.0));
     assert!(model(&still).contains("3.5"));
+}
+
+#[test]
+fn a_collider_that_is_not_dynamic_moves_and_acts_on_nothing() {
+    let off = program(
+        r#""n": nucleus(), "box": polyCube(tx: keys([(1, 0), (3, 2)])), "c": nRigid(inputMesh: "box", isDynamic: false,
+            forceField: doubleSided, fieldMagnitude: 3, pointForceField: worldspace, pushOut: 1, airPushDistance: 2)"#,
+    );
+    let mut collider = off.first_input().colliders[0].clone();
+    assert_eq!(std::mem::take(&mut collider.end).len(), 8);
+    assert_eq!(collider, ColliderFrame { collide: false, ..ColliderFrame::default() });
 }
 
 #[test]

@@ -47,10 +47,16 @@ fn particles_that_are_not_dynamic_stay_where_they_are_and_none_are_emitted() {
     let at_rest = program(&of_nodes(&nodes("false"), ""));
     assert_eq!(places(&at_rest, 8), [[1.0, 2.0, 3.0]]);
     // They are let go at frame 3: the interval that ends there is the first in which they fall.
-    let let_go = program(&of_nodes(&nodes("keys([(0, false), (3, true)])"), ""));
-    assert_eq!(places(&let_go, 1), [[1.0, 2.0, 3.0]]);
-    let fallen = places(&let_go, 6);
+    let released = program(&of_nodes(&nodes("keys([(0, false), (3, true)])"), ""));
+    assert_eq!(places(&released, 1), [[1.0, 2.0, 3.0]]);
+    let fallen = places(&released, 6);
     assert!(fallen.len() > 10 && fallen[0][1] < 2.0, "{fallen:?}");
+}
+
+#[test]
+fn a_field_that_is_connected_to_nothing_is_warned_of() {
+    let nodes = r#""n": nucleus(), "idle": airField(), "down": gravityField(target: "q"), "q": nParticle(position: [(1, 2, 3)])"#;
+    assert_eq!(warnings(&of_nodes(nodes, "")), ["`idle` acts on nothing"]);
 }
 
 #[test]

@@ -35,7 +35,8 @@ impl<R: Real> Collisions<'_, R> {
             [own @ LinkSide::Cloth { cloth, .. }, LinkSide::Collider { collider, points, .. }]
             | [LinkSide::Collider { collider, points, .. }, own @ LinkSide::Cloth { cloth, .. }] => {
                 let (at, theirs) = (collider.index(), points.map(|point| point.0));
-                ContactMaterial::<R>::for_collider(&cloths[cloth.index()], &colliders[at], [1.0; 2])
+                let own_frame = &cloths[cloth.index()];
+                ContactMaterial::<R>::for_collider(own_frame, &colliders[at], [1.0; 2], *layer_range)
                     .filter(|_| !self.pair_filter.excludes_collider(&self.rows(&own), at, &theirs))
             }
             _ => None,

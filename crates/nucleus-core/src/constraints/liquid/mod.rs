@@ -229,7 +229,8 @@ impl LiquidSolver {
         let region = walls.new_region(bounds);
         for (at, model) in colliders.iter().enumerate() {
             let factors = contact.material_maps.max_thickness_factors(step.cloth, at);
-            let Some(material) = ContactMaterial::<R>::for_collider(own, &frame.colliders[at], factors)
+            let theirs = &frame.colliders[at];
+            let Some(material) = ContactMaterial::<R>::for_collider(own, theirs, factors, frame.layer_range)
             else {
                 continue;
             };

@@ -179,7 +179,8 @@ fn update_materials<R: Real>(contact: &mut ContactSystem<R>, frame: &FrameInput)
     let maps = &contact.material_maps;
     let with = |cloth: usize, collider: usize| {
         let (own, theirs) = (&frame.cloths[cloth], &frame.colliders[collider]);
-        ContactMaterial::for_collider(own, theirs, maps.max_thickness_factors(cloth, collider))
+        let factors = maps.max_thickness_factors(cloth, collider);
+        ContactMaterial::for_collider(own, theirs, factors, frame.layer_range)
             .map(|material| material.for_resistance(frame.resistance))
     };
     let colliders = frame.colliders.len();

@@ -15,6 +15,7 @@ use crate::contact::collider::{Boxes, ColliderState};
 use crate::contact::depenetration::is_inside;
 use crate::contact::pair_filter::PairFilter;
 use crate::contact::time_step::ColliderStep;
+use crate::input::frame::Elements;
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
 use crate::parallel::disjoint::DisjointSlice;
@@ -176,19 +177,26 @@ impl<R: Real> ColliderQuery<'_, R> {
         if !face.overlaps(around) {
             return;
         }
+        let material = &self.step.material;
+        let collides_by_faces = |side: usize| material.elements[side] == Elements::Faces;
         let corners = theirs.triangles[triangle as usize];
-        let points = boundary.points[group.points.clone()].iter().zip(&ours.points);
-        for (&point, _) in points.filter(|(_, bound)| bound.overlaps(face)) {
-            self.add(&mut found.point_face, [point], corners, triangle as usize);
+        // A group without faces is free points.
+        if collides_by_faces(1) || group.triangles.is_empty() {
+            let points = boundary.points[group.points.clone()].iter().zip(&ours.points);
+            for (&point, _) in points.filter(|(_, bound)| bound.overlaps(face)) {
+                self.add(&mut found.point_face, [point], corners, triangle as usize);
+            }
         }
         let owned = theirs.owned(triangle as usize);
-        for edge in owned.edges.filter(|&edge| boxes.edges[edge].overlaps(around)) {
+        let edges = if material.edges { owned.edges } else { 0..0 };
+        for edge in edges.filter(|&edge| boxes.edges[edge].overlaps(around)) {
             let edges = boundary.edges[group.edges.clone()].iter().zip(&ours.edges);
             for (&ends, _) in edges.filter(|(_, bound)| bound.overlaps(&boxes.edges[edge])) {
                 self.add(&mut found.edge_edge, ends, theirs.edges[edge], edge);
             }
         }
-        for point in owned.points.filter(|&point| boxes.points[point].overlaps(around)) {
+        let points = if collides_by_faces(0) { owned.points } else { 0..0 };
+        for point in points.filter(|&point| boxes.points[point].overlaps(around)) {
             let faces = boundary.triangles[group.triangles.clone()].iter().zip(&ours.triangles);
             for (&face, _) in faces.filter(|(_, bound)| bound.overlaps(&boxes.points[point])) {
                 self.add(&mut found.face_point, face, [theirs.points[point]], point);

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::input::frame::cloth::ClothFrame;
-use crate::input::frame::contact::{ForceField, PushOut};
+use crate::input::frame::contact::{Elements, ForceField, PushOut};
 use crate::input::object_fields::{PointField, WindField};
 
 /// One collider in one frame: its motion and contact attributes.
@@ -15,6 +15,11 @@ pub struct ColliderFrame {
     pub end: Vec<Vector3<f64>>,
     /// Whether cloth collides with it in this frame.
     pub collide: bool,
+    /// The elements of it that collide with cloth: with less than faces, points of cloth pass through it. Points of no face,
+    /// such as particles, collide with its faces at any value.
+    pub elements: Elements,
+    /// `collisionLayer`: it collides with objects in the same layer and in higher ones, less than `layer_range` away.
+    pub layer: f64,
     /// Thickness in metres.
     pub thickness: f64,
     /// Friction; the two sides' values are added.
@@ -41,11 +46,14 @@ impl Default for ColliderFrame {
     /// The contact attributes of [`ClothFrame::DEFAULT`], without friction or motion.
     fn default() -> Self {
         let ClothFrame { collide, thickness, stickiness, bounce, collide_strength, .. } = ClothFrame::DEFAULT;
-        let ClothFrame { push_out, field, point_field, wind_field, .. } = ClothFrame::DEFAULT;
+        let ClothFrame { elements, layer, push_out, field, point_field, wind_field, .. } =
+            ClothFrame::DEFAULT;
         Self {
             start: Vec::new(),
             end: Vec::new(),
             collide,
+            elements,
+            layer,
             thickness,
             friction: 0.0,
             stickiness,

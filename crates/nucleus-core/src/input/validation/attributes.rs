@@ -64,6 +64,7 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.stickiness, default.stickiness),
         (&mut cloth.bounce, default.bounce),
         (&mut cloth.collide_strength, default.collide_strength),
+        (&mut cloth.layer, default.layer),
         (&mut cloth.push_out.share, default.push_out.share),
         (&mut cloth.push_out.radius, default.push_out.radius),
         (&mut cloth.crossover_push, default.crossover_push),
@@ -148,6 +149,7 @@ pub(super) fn sanitize_collider_settings(collider: &mut ColliderFrame) -> bool {
             (&mut collider.stickiness, 0.0),
             (&mut collider.bounce, 0.0),
             (&mut collider.collide_strength, 1.0),
+            (&mut collider.layer, 0.0),
             (&mut collider.push_out.share, 0.0),
             (&mut collider.push_out.radius, 0.0),
         ])
