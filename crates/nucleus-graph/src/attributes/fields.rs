@@ -23,7 +23,7 @@ pub mod dyn_base {
             OWNER: Plugged = plug("owner", "ow", Data::Message).elsewhere("fields stand for themselves: none comes from the points of another object");
         }
         "Nucleus (open)" {
-            /// The object that it acts on or emits into.
+            /// The object that it acts on or emits into. A field acts on more through `outputForce` and their `inputForce`.
             TARGET: Plugged = node("target", "target", None).solved("nucleus_graph::graph").extension();
         }
         "Owner" {

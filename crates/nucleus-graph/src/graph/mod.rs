@@ -24,7 +24,7 @@ mod nodes;
 mod setting;
 mod text;
 
-pub use connections::may_be_from_creation;
+pub use connections::{joins_a_nucleus, may_be_from_creation};
 pub use creation::Creation;
 pub use error::GraphError;
 pub use eval_context::EvalContext;

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::attributes::{dyn_base, n_base, n_particle, nucleus};
-use crate::graph::{Connection, Creation, Graph, NodeId};
+use crate::graph::{Connection, Creation, Graph, NodeId, joins_a_nucleus};
 
 /// The short form of a graph.
 pub(super) struct ShortForm {
@@ -63,17 +63,20 @@ impl ShortForm {
         !self.created.contains(&id) && id != self.clock
     }
 
-    /// Whether a node of this name has an explicit connection.
-    pub(super) fn has_explicit_connections(&self, name: &str) -> bool {
-        let mut plugs = self.explicit.iter().flatten();
-        plugs.any(|plug| plug.split('.').next() == Some(name))
+    /// Whether an object of this name has an explicit connection with a nucleus.
+    pub(super) fn joins_a_nucleus_explicitly(&self, name: &str) -> bool {
+        let attribute = |plug: &str| -> Option<bool> {
+            let (node, attribute) = plug.split_once('.')?;
+            Some(node == name && joins_a_nucleus(attribute.split('[').next()?))
+        };
+        self.explicit.iter().flatten().any(|plug| attribute(plug) == Some(true))
     }
 
-    /// Particles in short form with explicit connections: reading would not connect them to a nucleus.
+    /// Particles in short form that an explicit connection joins to a nucleus: reading would make no other.
     fn particles_with_explicit_connections(&self, graph: &Graph) -> Vec<NodeId> {
         let is_particles = |id: NodeId| graph.node(id).node_type().is_a(&n_particle::N_PARTICLE);
         let joined = self.creations.keys().copied().filter(|&id| is_particles(id));
-        joined.filter(|&id| self.has_explicit_connections(graph.node(id).name())).collect()
+        joined.filter(|&id| self.joins_a_nucleus_explicitly(graph.node(id).name())).collect()
     }
 
     /// Whether a node is an object in short form.

@@ -113,7 +113,7 @@ fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortFo
     if row.name == "nucleus"
         && is_particles
         && !short.is_object(id)
-        && !short.has_explicit_connections(node.name())
+        && !short.joins_a_nucleus_explicitly(node.name())
     {
         return vec!["nucleus: \"\"".to_owned()];
     }

@@ -54,6 +54,16 @@ fn particles_that_are_not_dynamic_stay_where_they_are_and_none_are_emitted() {
 }
 
 #[test]
+fn particles_with_a_connected_attribute_belong_to_their_nucleus_all_the_same() {
+    let nodes = r#""n": nucleus(), "a": transform(tx: 0.5), "q": nParticle(position: [(1, 2, 3)])"#;
+    let text = of_nodes(nodes, r#"("a.tx", "q.friction")"#);
+    assert!(places(&program(&text), 4)[0][1] < 2.0, "they fall");
+    let (read, _) = read_scene_text(&text, Path::new("test.ron")).expect("it can be read");
+    let written = nucleus_graph::scene::write_scene(&read);
+    assert_eq!(places(&program(&written), 4), places(&program(&text), 4), "{written}");
+}
+
+#[test]
 fn a_field_that_is_connected_to_nothing_is_warned_of() {
     let nodes = r#""n": nucleus(), "idle": airField(), "down": gravityField(target: "q"), "q": nParticle(position: [(1, 2, 3)])"#;
     assert_eq!(warnings(&of_nodes(nodes, "")), ["`idle` acts on nothing"]);

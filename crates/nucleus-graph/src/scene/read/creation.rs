@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::attributes::{NodeType, dyn_base, dynamic_constraint, n_base, n_particle, nucleus};
 use crate::diagnostic::Findings;
-use crate::graph::{Creation, Graph, NodeId};
+use crate::graph::{Creation, Graph, NodeId, joins_a_nucleus};
 use crate::scene::document::Source;
 
 use super::components;
@@ -87,10 +87,11 @@ impl Creator<'_> {
         self.ends.iter().any(|ends| ends.range((id, "")..).next().is_some_and(|(node, _)| *node == id))
     }
 
-    /// Whether particles get no implicit connections: they have explicit ones, or no nucleus (`nucleus: ""`).
+    /// Whether particles get no implicit connections: they have explicit ones with a nucleus, or none (`nucleus: ""`).
     fn is_left_unconnected(&self, id: NodeId) -> bool {
         let mut references = self.references.all.iter();
-        self.has_explicit_connections(id)
+        let mut ends = self.ends.iter().flatten();
+        ends.any(|(node, attribute)| *node == id && joins_a_nucleus(attribute))
             || references.any(|r| r.node == id && r.row.name == "nucleus" && r.name.is_empty())
     }
 

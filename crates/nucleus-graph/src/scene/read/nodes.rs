@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
-use crate::attributes::{Attribute, Effect, Kind, Value as AttrValue, n_base, read_component, time};
+use crate::attributes::{
+    Attribute, Effect, Kind, Value as AttrValue, dyn_base, n_base, read_component, time,
+};
 use crate::diagnostic::{Findings, Severity, listed, nearest};
 use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
 use crate::memory::NODE;
@@ -144,6 +146,18 @@ impl NodeReader<'_, '_> {
         }
     }
 
+    /// Refuses several names where an attribute takes one. A field reaches more objects by connections.
+    fn list_of_names(&mut self, label: &str, row: &'static Attribute, node: &Node) {
+        let own = self.declaration.name;
+        let error = self.findings.error(&node.span, format!("{label} takes one name, found a list"));
+        if row == &dyn_base::TARGET.row {
+            let wire = format!("(\"{own}.outputForce[1]\", \"cloth2.inputForce[0]\")");
+            error.help(format!(
+                "name the first here, and connect a field to each of the others: `connections: [{wire}]`"
+            ));
+        }
+    }
+
     fn attribute(&mut self, word: &Word, row: &'static Attribute, node: &Node) {
         if let Kind::Together(parts) = row.kind {
             return self.together(word, row, parts, node);
@@ -154,6 +168,7 @@ impl NodeReader<'_, '_> {
         let label = format!("`{}` of `{}`", row.name, self.declaration.name);
         self.source.note(format!("{}.{}", self.declaration.name, row.name), &node.span);
         match row.kind {
+            Kind::Node(_) if matches!(node.value, Value::List(_)) => self.list_of_names(&label, row, node),
             Kind::Node(_) => {
                 let Some(name) = text(&label, node, self.findings) else { return };
                 let (node_id, name, span) = (self.id, name.to_owned(), node.span.clone());

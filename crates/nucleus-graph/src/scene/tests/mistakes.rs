@@ -227,6 +227,21 @@ fn errors_of_explicit_connections_have_their_place() {
 }
 
 #[test]
+fn several_targets_of_a_field_are_refused_and_the_help_makes_it_act_on_them() {
+    let nodes = r#""q": nParticle(position: [(0, 0, 0)]), "s": nParticle(position: [(1, 0, 0)]), "#;
+    let field = r#""wind": airField(target: ["q", "s"])"#;
+    let help = "name the first here, and connect a field to each of the others: \
+        `connections: [(\"wind.outputForce[1]\", \"cloth2.inputForce[0]\")]`";
+    let message = "`target` of `wind` takes one name, found a list";
+    expect(&with_nodes(&format!("{nodes}{field}")), &[(r#"["q", "s"]"#, message, help)]);
+    let wire = r#"connections: [("wind.outputForce[1]", "s.inputForce[0]")]"#;
+    let text = with_nodes(&format!(r#"{nodes}"wind": airField(target: "q")"#));
+    let wired = scene(&text.replacen("Scene(", &format!("Scene({wire}, "), 1));
+    let program = crate::compile::compile(&wired).expect("it compiles");
+    assert_eq!(program.first_input().fields[0].targets.len(), 2);
+}
+
+#[test]
 fn a_blend_needs_a_mesh_of_as_many_points() {
     let text = with_nodes(
         r#""a": polyPlane(blendTarget: "b"), "b": polyPlane(subdivisions: (2, 3)), "c": nCloth(inputMesh: "a")"#,
