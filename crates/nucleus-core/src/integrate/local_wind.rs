@@ -99,14 +99,56 @@ fn surfaces<R: Real, T>(
         }
     }
     for (at, (cloth, settings)) in objects.cloths.iter().zip(&frame.cloths).enumerate() {
-        // Particles have no surface.
-        if wanted(&settings.wind_field) && !cloth.surface_triangles().is_empty() {
-            let first = cloth.points().start;
-            let triangles = cloth.surface_triangles().into_iter().map(|t| t.map(|row| row - first)).collect();
-            let surface = PlacedSurface::new(triangles, |at| state.position(first + at).into());
-            let velocity = |row: u32| Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
-            made.push(make(surface, &settings.wind_field, Some(at), cloth.points().map(velocity).collect()));
+        if !wanted(&settings.wind_field) || cloth.points().is_empty() {
+            continue;
         }
+        let first = cloth.points().start;
+        let position = |at: u32| Vector3::from(state.position(first + at));
+        let velocity = |row: u32| Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
+        let triangles: Vec<_> =
+            cloth.surface_triangles().into_iter().map(|t| t.map(|row| row - first)).collect();
+        let (surface, corners) = if triangles.is_empty() {
+            let corner = |at: u32| position(at / 6) + OCTAHEDRON[at as usize % 6] * settings.thickness;
+            (PlacedSurface::new(octahedra(cloth.points().len() as u32), corner), 6)
+        } else {
+            (PlacedSurface::new(triangles, position), 1)
+        };
+        let moved = cloth.points().flat_map(|row| std::iter::repeat_n(velocity(row), corners));
+        made.push(make(surface, &settings.wind_field, Some(at), moved.collect()));
     }
     made
+}
+
+/// Corners of an octahedron of radius 1, which stands for a particle.
+const OCTAHEDRON: [Vector3<f64>; 6] = [
+    Vector3::new(1.0, 0.0, 0.0),
+    Vector3::new(0.0, 1.0, 0.0),
+    Vector3::new(0.0, 0.0, 1.0),
+    Vector3::new(-1.0, 0.0, 0.0),
+    Vector3::new(0.0, -1.0, 0.0),
+    Vector3::new(0.0, 0.0, -1.0),
+];
+
+/// The faces of an octahedron for each particle, facing outwards; corners are counted six for each.
+fn octahedra(count: u32) -> Vec<[u32; 3]> {
+    let face = |first: u32, octant: u32| {
+        // A corner on either half of each axis; an odd number on the negative half inverts the winding.
+        let [x, y, z] = [0, 1, 2].map(|axis| first + axis + 3 * (octant >> axis & 1));
+        if octant.count_ones().is_multiple_of(2) { [x, y, z] } else { [x, z, y] }
+    };
+    (0..count).flat_map(|at| (0..8).map(move |octant| face(6 * at, octant))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_faces_of_an_octahedron_face_outwards() {
+        for [a, b, c] in octahedra(2) {
+            assert_eq!([a / 6, b / 6], [c / 6; 2], "a face is of one particle");
+            let [a, b, c] = [a, b, c].map(|corner| OCTAHEDRON[corner as usize % 6]);
+            assert_eq!((b - a).cross(&(c - a)).dot(&(a + b + c)), 3.0);
+        }
+    }
 }

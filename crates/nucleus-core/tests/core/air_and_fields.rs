@@ -152,6 +152,36 @@ fn a_moving_object_makes_wind_and_one_at_rest_slows_it() {
     assert!(along > 0.5 && (back / along + 0.5).abs() < 0.01, "it flows back at the sides: {along} {back}");
 }
 
+/// The gain of a small cloth at a place by a particle of 30 cm at the origin, over that of free wind of 1 m/s.
+fn by_a_particle(velocity: Vec3, wind: Vec3, wind_field: WindField, place: Vec3) -> f64 {
+    let run = |wind: Vec3, wind_field: WindField| {
+        let cloth = Cloth::new(tile(0.01, place), Mass::PerArea(1.0), AIRY);
+        let surface = Surface { positions: vec![Vec3::zeros()], ..Surface::default() };
+        let mut particle = Cloth::new(surface, Mass::PerPoint(1.0), ClothLists::NONE);
+        particle.start.velocities = vec![velocity];
+        let airy = ClothFrame { drag: 0.05, tangential_drag: 1.0, lift: 0.0, ..still() };
+        let settings = vec![airy, ClothFrame { thickness: 0.3, wind_field, drag: 0.0, ..still() }];
+        gain(solver(vec![cloth, particle], Vec::new()), &FrameInput { duration: 1e-3, ..air(wind, settings) })
+            .z
+    };
+    run(wind, wind_field) / run(Vec3::z(), WindField::OFF)
+}
+
+#[test]
+fn a_particle_casts_a_wind_shadow_and_pushes_air_from_its_radius_on() {
+    let shadow = WindField { shadow_distance: 2.0, ..WindField::OFF };
+    let at = |x: f64, z: f64| by_a_particle(Vec3::zeros(), Vec3::z(), shadow, Vec3::new(x, 0.02, z));
+    assert!(at(0.02, 0.35) < 0.05, "close behind it there is hardly any: {}", at(0.02, 0.35));
+    assert!(at(0.02, 1.0) > 0.1 && at(0.02, 1.0) < 0.6, "half way a part of it: {}", at(0.02, 1.0));
+    for free in [at(0.4, 0.5), at(0.02, -0.5), at(0.02, 2.4)] {
+        assert!((free - 1.0).abs() < 1e-9, "beside, before and beyond it all of it: {free}");
+    }
+    let push = WindField { push_distance: 1.0, ..WindField::OFF };
+    let ahead = |z: f64| by_a_particle(Vec3::z() * 3.0, Vec3::zeros(), push, Vec3::new(0.0, 0.0, z));
+    assert!((ahead(0.8) - 0.75).abs() < 0.03, "a quarter of its speed half way: {}", ahead(0.8));
+    assert!(ahead(1.4).abs() < 1e-9, "none beyond: {}", ahead(1.4));
+}
+
 #[test]
 fn the_air_of_objects_and_parallel_links_give_the_same_bits_on_any_number_of_threads() {
     let hash = |threads: usize| {
