@@ -417,6 +417,15 @@ fn joined_edges_resist_folding_only_with_bend() {
     let edges = r#""s": dynamicConstraint(type: pointToPoint, components: ["a.e[border]", "b.e[border]"],
         connectionMethod: withinMaxDistance, maxDistance: 0.2, bend: true)"#;
     assert!(folds(&format!("{PAIR}{edges}")) >= 4);
+    let points = format!(
+        r#"{PAIR}"s": dynamicConstraint(components: ["a.border", "b.border"], type: weldBorders, bend: true)"#
+    );
+    let warnings = |nodes: &str| {
+        let compiled = program(&of_nodes(nodes, ""));
+        compiled.warnings().iter().map(|warning| warning.message.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(warnings(&points), ["`bend` of `s` has no effect: none of its components are edges"]);
+    assert!(warnings(&seam(", bend: true")).is_empty());
 }
 
 #[test]

@@ -169,6 +169,14 @@ impl Compiler<'_> {
             }
             return false;
         }
+        let has_edges = members.iter().any(|member| member.kind == ElementKind::Edge);
+        if values.toggle(&con::BEND) && kind != kinds::TEARABLE && !has_edges {
+            let place = self.scene.source.place(&format!("{name}.{}", con::BEND.row.name));
+            let message = format!("`bend` of `{name}` has no effect: none of its components are edges");
+            self.findings
+                .warning(&place, message)
+                .help("edges bend about each other: name `cloth1.e[border]`");
+        }
         let is_passive = |member: &Member| matches!(member.object, MemberObject::Collider(_));
         let objects: BTreeSet<_> = members.iter().map(|member| member.object.key()).collect();
         let needs_two = matches!(
