@@ -84,7 +84,6 @@ impl<R: Real> ContactMaterial<R> {
         // At a difference of one layer the lower layer does not move.
         let heavier = (1.0 - above.abs()).max(0.0);
         let mobility = if above < 0.0 { [heavier, 1.0] } else { [1.0, heavier] };
-        let flat = |side: &ClothFrame| side.elements != Elements::Points;
         let per_side = |of: fn(&ClothFrame) -> f64| [a, b].map(|side| R::from_f64(of(side)));
         let thickness = a.thickness * max_thickness_factor[0] + b.thickness * max_thickness_factor[1];
         Some(Self {
@@ -99,7 +98,7 @@ impl<R: Real> ContactMaterial<R> {
             depenetrates: false,
             mobility: mobility.map(R::from_f64),
             elements: [a.elements, b.elements],
-            edges: flat(a) && flat(b),
+            edges: a.elements.has_edges() && b.elements.has_edges(),
             grips: false,
         })
     }
@@ -113,10 +112,8 @@ impl<R: Real> ContactMaterial<R> {
         range: f64,
     ) -> Option<Self> {
         let strength = [cloth.collide_strength, collider.collide_strength].map(|side| side.min(1.0));
-        let above = cloth.layer - collider.layer;
-        let is_in_range = above == 0.0 || (above > 0.0 && above < range);
+        let is_in_range = (0.0..range).contains(&(cloth.layer - collider.layer));
         let is_off = !cloth.collide || cloth.is_driven || !collider.collide || !is_in_range;
-        let flat = |elements: Elements| elements != Elements::Points;
         if is_off || strength.iter().any(|&side| side <= 0.0) {
             return None;
         }
@@ -135,7 +132,7 @@ impl<R: Real> ContactMaterial<R> {
             depenetrates: collider.trapped_check && collider.elements == Elements::Faces,
             mobility: [R::ONE, R::ZERO],
             elements: [cloth.elements, collider.elements],
-            edges: flat(cloth.elements) && flat(collider.elements),
+            edges: cloth.elements.has_edges() && collider.elements.has_edges(),
             grips: false,
         })
     }

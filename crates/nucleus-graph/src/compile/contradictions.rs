@@ -148,6 +148,7 @@ impl Compiler<'_> {
             let message = format!("`{}` of `{}` has no effect: {because}", row.name, node.name());
             self.findings.warning(&place, message).help(*help);
         }
+        self.warn_of_bounce(object, &n_base::BOUNCE);
     }
 
     /// Warns of a bounce above 1, which counts as 1.

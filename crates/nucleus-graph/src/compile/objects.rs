@@ -59,7 +59,6 @@ impl Compiler<'_> {
         let warp = self.warp(id, mesh, rest.as_ref().unwrap_or(&surface))?;
         self.check_pressure(id, &surface);
         self.warn_of_contradictions(id);
-        self.warn_of_bounce(id, &n_base::BOUNCE);
         let given = surface.positions.len();
         let tearing = self.tearing(id, mesh, &surface);
         let [input, rest] =
@@ -191,7 +190,6 @@ impl Compiler<'_> {
         let default_thickness = default_thickness(&surface, COLLIDER_SHARE);
         let motion = self.collider_motion(mesh)?;
         self.warn_of_contradictions(id);
-        self.warn_of_bounce(id, &n_base::BOUNCE);
         self.warn_of_recorded_collider(id, mesh);
         let surface = self.program.units.surface(surface);
         let (points, faces) = (surface.positions.len(), surface.faces.clone());

@@ -28,7 +28,6 @@ impl Compiler<'_> {
         let recorded = self.recorded(id, None)?;
         self.check_liquid(id)?;
         self.warn_of_contradictions(id);
-        self.warn_of_bounce(id, &n_base::BOUNCE);
         let velocities = self.first_given(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
         let velocities = match self.plays_from_start(id) {
             true => Vec::new(),

@@ -33,7 +33,7 @@ pub fn may_be_from_creation(to: Plug) -> bool {
     CREATED.contains(&to.attribute.name) || to.attribute.name == particle::START_FRAME.row.name
 }
 
-/// Whether a plug connects an object to its nucleus.
+/// Whether plugs of this attribute connect an object to its nucleus.
 pub fn joins_a_nucleus(attribute: &str) -> bool {
     let plugs = [&n_base::CURRENT_STATE, &n_base::START_STATE, &n_base::NEXT_STATE];
     plugs.iter().any(|key| key.row.name == attribute)

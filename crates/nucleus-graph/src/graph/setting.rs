@@ -88,11 +88,9 @@ impl Setting {
     /// Whether a number is nonzero at any frame.
     pub fn is_ever_nonzero(&self) -> bool {
         match self {
-            Self::Fixed(Value::Float(x)) => *x != 0.0,
-            Self::Fixed(Value::Int(x)) => *x != 0,
+            Self::Fixed(Value::Float(_) | Value::Int(_)) | Self::Keyed(_) => self.largest() != 0.0,
             Self::Fixed(Value::Bool(on)) => *on,
             Self::Fixed(_) => true,
-            Self::Keyed(curve) => curve.max_abs() != 0.0,
             Self::Parts(channels) => channels.iter().any(|channel| match channel {
                 Channel::Fixed(x) => *x != 0.0,
                 Channel::Keyed(curve) => curve.max_abs() != 0.0,

@@ -32,7 +32,7 @@ impl ShortForm {
             let (recreated, done) = recreate(graph, &creations);
             let mut different = different(graph, &recreated, &creations, &done);
             let short = Self::new(graph, creations, &recreated);
-            different.extend(short.particles_with_explicit_connections(graph));
+            different.extend(short.particles_joined_explicitly(graph));
             if different.is_empty() {
                 return short;
             }
@@ -65,15 +65,13 @@ impl ShortForm {
 
     /// Whether an object of this name has an explicit connection with a nucleus.
     pub(super) fn joins_a_nucleus_explicitly(&self, name: &str) -> bool {
-        let attribute = |plug: &str| -> Option<bool> {
-            let (node, attribute) = plug.split_once('.')?;
-            Some(node == name && joins_a_nucleus(attribute.split('[').next()?))
-        };
-        self.explicit.iter().flatten().any(|plug| attribute(plug) == Some(true))
+        let attributes = self.explicit.iter().flatten().filter_map(|plug| plug.split_once('.'));
+        let mut own = attributes.filter(|(node, _)| *node == name);
+        own.any(|(_, attribute)| joins_a_nucleus(attribute.split('[').next().unwrap_or_default()))
     }
 
     /// Particles in short form that an explicit connection joins to a nucleus: reading would make no other.
-    fn particles_with_explicit_connections(&self, graph: &Graph) -> Vec<NodeId> {
+    fn particles_joined_explicitly(&self, graph: &Graph) -> Vec<NodeId> {
         let is_particles = |id: NodeId| graph.node(id).node_type().is_a(&n_particle::N_PARTICLE);
         let joined = self.creations.keys().copied().filter(|&id| is_particles(id));
         joined.filter(|&id| self.joins_a_nucleus_explicitly(graph.node(id).name())).collect()

@@ -46,7 +46,7 @@ fn particles_that_are_not_dynamic_stay_where_they_are_and_none_are_emitted() {
     };
     let at_rest = program(&of_nodes(&nodes("false"), ""));
     assert_eq!(places(&at_rest, 8), [[1.0, 2.0, 3.0]]);
-    // They are let go at frame 3: the interval that ends there is the first in which they fall.
+    // Released at frame 3, they fall in the interval that ends there.
     let released = program(&of_nodes(&nodes("keys([(0, false), (3, true)])"), ""));
     assert_eq!(places(&released, 1), [[1.0, 2.0, 3.0]]);
     let fallen = places(&released, 6);

@@ -1,6 +1,5 @@
 //! Values pulled along connections.
 
-use nucleus_graph::Simulation;
 use nucleus_graph::attributes::{n_base, n_cloth, nucleus, transform};
 
 use super::scenes::{of_nodes, program, scene};
@@ -50,22 +49,4 @@ fn a_frame_evaluates_only_the_nodes_that_it_needs() {
         program.pulled(3).iter().map(|id| program.graph().node(*id).name().to_owned()).collect();
     // The solver's own values first, then colliders, then cloth, then constraints.
     assert_eq!(names, ["n", "b", "r", "c", "pin"]);
-}
-
-#[test]
-fn cloth_that_is_not_dynamic_follows_its_input_mesh_through_a_collider_without_a_contact() {
-    let nodes = |dynamic: &str| {
-        format!(
-            r#""n": nucleus(), "m": polyPlane(translate: keys([(1, (0, 0.6, 0)), (9, (0, -0.6, 0))])),
-            "c": nCloth(inputMesh: "m", isDynamic: {dynamic}, inputMeshAttract: 10, inputAttractMethod: 1),
-            "box": polyCube(scale: (0.3, 0.3, 0.3)), "r": nRigid(inputMesh: "box")"#
-        )
-    };
-    let unresolved = |dynamic: &str| {
-        let program = program(&of_nodes(&nodes(dynamic), ""));
-        let mut run = Simulation::<f32>::new(&program, 1);
-        (0..10).map(|_| run.advance(&mut ()).report.pairs_unresolved).sum::<u64>()
-    };
-    assert_eq!(unresolved("false"), 0);
-    assert!(unresolved("true") > 0, "dynamic cloth whose points are all locked is carried through the box");
 }

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use nucleus_graph::Simulation;
 use nucleus_graph::compile::compile;
 use nucleus_graph::scene::{Severity, read_scene_text, write_scene};
 
@@ -215,4 +216,22 @@ fn sorting_links_from_nothing_is_a_warning() {
         said(&text),
         ["warning at true: `sortLinks` of `c` has no effect: no constraint holds a point of it | "]
     );
+}
+
+#[test]
+fn cloth_that_is_not_dynamic_follows_its_input_mesh_through_a_collider_without_a_contact() {
+    let nodes = |dynamic: &str| {
+        format!(
+            r#""n": nucleus(), "m": polyPlane(translate: keys([(1, (0, 0.6, 0)), (9, (0, -0.6, 0))])),
+            "c": nCloth(inputMesh: "m", isDynamic: {dynamic}, inputMeshAttract: 10, inputAttractMethod: 1),
+            "box": polyCube(scale: (0.3, 0.3, 0.3)), "r": nRigid(inputMesh: "box")"#
+        )
+    };
+    let unresolved = |dynamic: &str| {
+        let program = program(&of_nodes(&nodes(dynamic), ""));
+        let mut run = Simulation::<f32>::new(&program, 1);
+        (0..10).map(|_| run.advance(&mut ()).report.pairs_unresolved).sum::<u64>()
+    };
+    assert_eq!(unresolved("false"), 0);
+    assert!(unresolved("true") > 0, "dynamic cloth whose points are all locked is carried through the box");
 }

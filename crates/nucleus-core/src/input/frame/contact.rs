@@ -13,6 +13,13 @@ pub enum Elements {
     Faces,
 }
 
+impl Elements {
+    /// Whether edges touch.
+    pub(crate) fn has_edges(self) -> bool {
+        self != Self::Points
+    }
+}
+
 /// Moves points of other objects to a side of the surface (`pushOut`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PushOut {

@@ -90,8 +90,11 @@ impl Creator<'_> {
     /// Whether particles get no implicit connections: they have explicit ones with a nucleus, or none (`nucleus: ""`).
     fn is_left_unconnected(&self, id: NodeId) -> bool {
         let mut references = self.references.all.iter();
-        let mut ends = self.ends.iter().flatten();
-        ends.any(|(node, attribute)| *node == id && joins_a_nucleus(attribute))
+        let of_node = |ends: &BTreeSet<(NodeId, &'static str)>| {
+            let mut own = ends.range((id, "")..).take_while(|(node, _)| *node == id);
+            own.any(|(_, attribute)| joins_a_nucleus(attribute))
+        };
+        self.ends.iter().any(of_node)
             || references.any(|r| r.node == id && r.row.name == "nucleus" && r.name.is_empty())
     }
 
