@@ -10,7 +10,7 @@ use crate::contact::cloth::contacts::{ClothContacts, GROUPS_PER_TASK, SearchBuff
 use crate::contact::cloth::found_contacts::FoundContacts;
 use crate::contact::cloth::intersections::find_intersections;
 use crate::contact::cloth::motion_bounds::{BoundPredictor, Trajectory};
-use crate::contact::cloth::query::ClothPair;
+use crate::contact::cloth::near_pairs::ClothPair;
 use crate::contact::cloth::search::{ClothSearch, RefreshKind, SearchInput};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
@@ -226,7 +226,7 @@ fn find_candidates<R: Real>(
             let [found] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
             found.clear();
             let groups = groups.chunks(GROUPS_PER_TASK).nth(task).unwrap_or_default();
-            groups.iter().for_each(|&group| search.search_group(group, found));
+            search.search_groups(groups, found);
             found.sort_by_task(&elements.block);
         });
         cache.add(&tasks[..chunks], pool);
@@ -236,21 +236,33 @@ fn find_candidates<R: Real>(
 }
 
 impl<R: Real> ClothSearch<'_, R> {
-    /// Finds all contacts of the elements of a group that have a new bound.
-    fn search_group(&self, group: u32, found: &mut FoundContacts<R>) {
-        let ours = self.group(group);
+    /// Finds all contacts of the elements of some groups that have a new bound.
+    fn search_groups(&self, groups: &[u32], found: &mut FoundContacts<R>) {
         let mut new = std::mem::take(&mut found.new_elements);
-        new.fill(self, &ours);
-        let [start, end] = new.swept_box;
-        let target = start.union(end);
-        for cloth in 0..self.input.cloths.len() {
-            let Some(pair) = ClothPair::new(self, [ours.first_edge.0, cloth]) else { continue };
-            self.elements.query_cloth(cloth, &target, |other| {
-                if Aabb::may_overlap(&new.swept_box, &self.elements.swept_boxes[other as usize]) {
-                    pair.test_boxes((&ours, &new), &self.group(other), found);
+        let mut waiting: Option<ClothPair<'_, R>> = None;
+        for &group in groups {
+            let ours = self.group(group);
+            new.fill(self, &ours);
+            let [start, end] = new.swept_box;
+            let target = start.union(end);
+            for cloth in 0..self.input.cloths.len() {
+                let Some(pair) = ClothPair::new(self, [ours.first_edge.0, cloth]) else { continue };
+                // Pairs of several groups together fill the lanes of the narrow phase.
+                if let Some(waiting) = &waiting
+                    && (waiting.cloths != pair.cloths || found.has_many_overlaps())
+                {
+                    waiting.find_contacts(found);
                 }
-            });
-            pair.find_contacts(found);
+                self.elements.query_cloth(cloth, &target, |other| {
+                    if Aabb::may_overlap(&new.swept_box, &self.elements.swept_boxes[other as usize]) {
+                        pair.test_boxes((&ours, &new), &self.group(other), found);
+                    }
+                });
+                waiting = Some(pair);
+            }
+        }
+        if let Some(waiting) = waiting {
+            waiting.find_contacts(found);
         }
         found.new_elements = new;
     }

@@ -6,9 +6,8 @@ use std::ops::Range;
 use crate::contact::bvh::{Aabb, SweptBox};
 use crate::contact::ccd::CERTIFIED_GAP;
 use crate::contact::cloth::motion_bounds::Trajectory;
-use crate::contact::cloth::swept_points::{ElementPoints, ROUNDING, SweptPoints, swept_point};
-use crate::contact::narrow_phase::{ElementPositions, between_centroids, gap_along, shortest_line};
-use crate::math::{Real, dot};
+use crate::contact::cloth::swept_points::{SweptPoints, swept_point};
+use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::particles::population::close_up;
 
@@ -107,25 +106,15 @@ impl SharedBounds<'_> {
 }
 
 impl ContactDistance {
-    /// That of two elements that stay at least `least` metres apart, if they can come closer than `range` times the thickness.
-    /// `rest` holds positions at rest, for elements of one cloth. `torn` gives the contact distance in metres of elements that
-    /// coincide at rest, and zero where they do not collide.
+    /// That of two elements that stay at least `least` metres apart and are `at_rest` metres apart at rest, if they can come
+    /// closer than `range` times the thickness. `torn` gives the contact distance in metres of elements that coincide at rest,
+    /// and zero where they do not collide.
     #[inline(always)]
-    pub fn new<const N: usize, const M: usize>(
-        (ours, theirs): ElementPoints<N, M>,
-        least: f32,
+    pub fn new(
+        [least, at_rest]: [f32; 2],
         [thickness, range]: [f32; 2],
-        rest: Option<&[[f32; 3]]>,
         torn: impl FnOnce() -> f32,
     ) -> Option<Self> {
-        if least >= thickness * range {
-            return None;
-        }
-        let resting = |rest: &[[f32; 3]]| {
-            (ours.map(|point| rest[point as usize]), theirs.map(|point| rest[point as usize]))
-        };
-        let enough = thickness / REST_GAP_SHARE;
-        let at_rest = rest.map_or(f32::INFINITY, |rest| rest_distance(resting(rest), enough));
         let contact_distance = thickness.min(if at_rest > 0.0 { at_rest * REST_GAP_SHARE } else { torn() });
         let certified = least > contact_distance * CERTIFIED_GAP as f32;
         (contact_distance > 0.0 && least < contact_distance * range).then_some(Self {
@@ -134,18 +123,4 @@ impl ContactDistance {
             certified,
         })
     }
-}
-
-/// The distance of two elements at rest; zero within rounding error, as for the diagonals of a doubled face.
-/// Elements that coincide at rest are excluded: they have no separating direction. Infinite where it certainly exceeds
-/// `enough`.
-#[inline(always)]
-fn rest_distance<const N: usize, const M: usize>(places: ElementPositions<f32, N, M>, enough: f32) -> f32 {
-    let line = between_centroids(&places);
-    if gap_along(line, &places) > enough * dot(line, line).sqrt() {
-        return f32::INFINITY;
-    }
-    let size = |[x, y, z]: [f32; 3]| x.abs() + y.abs() + z.abs();
-    let (_, _, distance) = shortest_line(places);
-    if distance > (size(places.0[0]) + size(places.1[0])) * ROUNDING { distance } else { 0.0 }
 }

@@ -3,9 +3,9 @@
 
 use std::ops::Range;
 
-use crate::contact::closest_lanes::{Four, closest, interpolate, of_lane};
+use crate::contact::closest_lanes::{Positions, closest, interpolate, of_lane, scaled};
 use crate::contact::cloth::motion_bounds::Trajectory;
-use crate::math::{Lanes as _, Real, dot, sub};
+use crate::math::{Lanes, Real, dot, sub};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::particles::population::close_up;
 
@@ -51,94 +51,93 @@ impl SweptPoints {
         DisjointSlice::new(&mut self.ends)
     }
 
-    /// Lower bounds on the distances of up to four pairs in metres, from a share of the candidate interval on.
+    /// Lower bounds on the distances of up to eight pairs in metres, from a share of the candidate interval on.
     #[inline(always)]
-    pub fn min_distances<const N: usize, const M: usize>(
+    pub fn min_distances<L: Lanes<f32>, const N: usize, const M: usize>(
         &self,
         pairs: &[ElementPoints<N, M>],
         share: f32,
-    ) -> [f32; 4] {
-        let (ours, theirs) = self.four_pairs(pairs, share);
-        let starts = (ours.map(|point| point.ends[0]), theirs.map(|point| point.ends[0]));
-        let weights = closest::<f32, N, M>(starts.0, starts.1);
-        let line =
-            sub(interpolate::<f32, N>(&starts.0, &weights.0), interpolate::<f32, M>(&starts.1, &weights.1));
+    ) -> L {
+        let (ours, theirs) = self.swept_pairs(pairs, share);
+        let starts = (starts(&ours), starts(&theirs));
+        let weights = closest::<f32, L, N, M>(starts.0, starts.1);
+        let line = sub(interpolate(&starts.0, &weights.0), interpolate(&starts.1, &weights.1));
         let length = dot(line, line).sqrt();
-        let (zero, one) = (FourLanes::splat(0.0), FourLanes::splat(1.0));
-        let per_length = length.choose_by_sign(one / length, zero);
-        let normal = line.map(|axis| axis * per_length);
+        let per_length = length.choose_by_sign(L::splat(1.0) / length, L::splat(0.0));
+        let normal = scaled::<f32, L>(line, per_length);
         let radii = largest_radius(&ours) + largest_radius(&theirs);
-        let least = length.least(gap_along(normal, (&ours, &theirs), 1)) - radii;
-        least.to_array()
+        length.least(gap_along(normal, (&ours, &theirs), 1)) - radii
     }
 
-    /// One bit for each of up to four pairs that keep `enough` metres from a share of the candidate interval on, along the
-    /// line between their centroids: most pairs whose boxes overlap do, and four take as long as one.
+    /// One bit for each of up to eight pairs that keep `enough` metres from a share of the candidate interval on, along the
+    /// line between their centroids: most pairs whose boxes overlap do, and eight take as long as one.
     #[inline(always)]
-    pub fn separated_centroids<const N: usize, const M: usize>(
+    pub fn separated_centroids<L: Lanes<f32>, const N: usize, const M: usize>(
         &self,
         pairs: &[ElementPoints<N, M>],
         share: f32,
         enough: f32,
     ) -> u32 {
-        let (ours, theirs) = self.four_pairs(pairs, share);
+        let (ours, theirs) = self.swept_pairs::<L, N, M>(pairs, share);
         let line = sub(centroids(&ours), centroids(&theirs));
-        let [start, end] = [0, 1].map(|end| gap_along(line, (&ours, &theirs), end));
-        let needed = FourLanes::splat(enough) + largest_radius(&ours) + largest_radius(&theirs);
+        let start = gap_along(line, (&ours, &theirs), 0);
+        let end = gap_along(line, (&ours, &theirs), 1);
+        let needed = L::splat(enough) + largest_radius(&ours) + largest_radius(&theirs);
         let length = dot(line, line).sqrt();
         !(needed * length - start.least(end)).above_zero() & length.above_zero()
     }
 
-    /// The points of up to four pairs by lane; the first pair fills the lanes that are left.
+    /// The points of up to eight pairs by lane; the first pair fills the lanes that are left.
     #[inline(always)]
-    fn four_pairs<const N: usize, const M: usize>(
+    fn swept_pairs<L: Lanes<f32>, const N: usize, const M: usize>(
         &self,
         pairs: &[ElementPoints<N, M>],
         share: f32,
-    ) -> ([FourPoints; N], [FourPoints; M]) {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| of_lane(pairs, lane));
-        let mut ours = [self.four([a.0[0], b.0[0], c.0[0], d.0[0]], share); N];
+    ) -> ([SweptLanes<L>; N], [SweptLanes<L>; M]) {
+        let mut ours = [self.swept_lanes(|lane| of_lane(pairs, lane).0[0], share); N];
         for k in 1..N {
-            ours[k] = self.four([a.0[k], b.0[k], c.0[k], d.0[k]], share);
+            ours[k] = self.swept_lanes(|lane| of_lane(pairs, lane).0[k], share);
         }
-        let mut theirs = [self.four([a.1[0], b.1[0], c.1[0], d.1[0]], share); M];
+        let mut theirs = [self.swept_lanes(|lane| of_lane(pairs, lane).1[0], share); M];
         for k in 1..M {
-            theirs[k] = self.four([a.1[k], b.1[k], c.1[k], d.1[k]], share);
+            theirs[k] = self.swept_lanes(|lane| of_lane(pairs, lane).1[k], share);
         }
         (ours, theirs)
     }
 
-    /// Four points by lane.
+    /// The point of each lane.
     #[inline(always)]
-    fn four(&self, points: [u32; 4], share: f32) -> FourPoints {
-        let [a, b, c, d] = points.map(|point| self.ends[point as usize].map(FourLanes::from_array));
-        let [x, y, z, radius] = FourLanes::transpose([a[0], b[0], c[0], d[0]]);
-        let [u, v, w, _] = FourLanes::transpose([a[1], b[1], c[1], d[1]]);
+    fn swept_lanes<L: Lanes<f32>>(&self, point: impl Fn(usize) -> u32, share: f32) -> SweptLanes<L> {
+        let mut ends = [[L::splat(0.0); 4]; 2];
+        for (end, rows) in ends.iter_mut().enumerate() {
+            for (k, row) in rows.iter_mut().enumerate() {
+                *row = L::of_groups(|group| self.ends[point(4 * group + k) as usize][end]);
+            }
+        }
+        let ([x, y, z, radius], [u, v, w, _]) = (L::transpose(ends[0]), L::transpose(ends[1]));
         let mut start = [x, y, z];
         if share > 0.0 {
-            let share = FourLanes::splat(share);
+            let share = L::splat(share);
             start = [x + (u - x) * share, y + (v - y) * share, z + (w - z) * share];
         }
-        FourPoints { ends: [start, [u, v, w]], radius }
+        SweptLanes { ends: [start, [u, v, w]], radius }
     }
 }
 
-type FourLanes = Four<f32>;
-
-/// The swept positions of four points, by lane.
+/// Swept positions by lane. All that follows is in loops: maps over arrays of lanes are not compiled for them.
 #[derive(Clone, Copy)]
-struct FourPoints {
-    ends: [[FourLanes; 3]; 2],
-    radius: FourLanes,
+struct SweptLanes<L> {
+    ends: [Positions<L>; 2],
+    radius: L,
 }
 
-/// The smallest gaps of four pairs along a direction each, at the start or at the end.
+/// The smallest gaps of pairs along a direction each, at the start or at the end.
 #[inline(always)]
-fn gap_along<const N: usize, const M: usize>(
-    direction: [FourLanes; 3],
-    (ours, theirs): (&[FourPoints; N], &[FourPoints; M]),
+fn gap_along<L: Lanes<f32>, const N: usize, const M: usize>(
+    direction: Positions<L>,
+    (ours, theirs): (&[SweptLanes<L>; N], &[SweptLanes<L>; M]),
     end: usize,
-) -> FourLanes {
+) -> L {
     let (mut low, mut high) = (dot(direction, ours[0].ends[end]), dot(direction, theirs[0].ends[end]));
     for point in &ours[1..] {
         low = low.least(dot(direction, point.ends[end]));
@@ -149,22 +148,35 @@ fn gap_along<const N: usize, const M: usize>(
     low - high
 }
 
-/// The centroids of four elements at the start.
+/// The centroids of elements at the start.
 #[inline(always)]
-fn centroids<const K: usize>(points: &[FourPoints; K]) -> [FourLanes; 3] {
+fn centroids<L: Lanes<f32>, const K: usize>(points: &[SweptLanes<L>; K]) -> Positions<L> {
     let mut sum = points[0].ends[0];
     for point in &points[1..] {
         for axis in 0..3 {
             sum[axis] = sum[axis] + point.ends[0][axis];
         }
     }
-    let share = FourLanes::splat(1.0 / K as f32);
+    let share = L::splat(1.0 / K as f32);
     [sum[0] * share, sum[1] * share, sum[2] * share]
 }
 
 #[inline(always)]
-fn largest_radius<const K: usize>(points: &[FourPoints; K]) -> FourLanes {
-    points[1..].iter().fold(points[0].radius, |most, point| most.most(point.radius))
+fn largest_radius<L: Lanes<f32>, const K: usize>(points: &[SweptLanes<L>; K]) -> L {
+    let mut most = points[0].radius;
+    for point in &points[1..] {
+        most = most.most(point.radius);
+    }
+    most
+}
+
+#[inline(always)]
+fn starts<L: Lanes<f32>, const K: usize>(points: &[SweptLanes<L>; K]) -> [Positions<L>; K] {
+    let mut starts = [points[0].ends[0]; K];
+    for k in 1..K {
+        starts[k] = points[k].ends[0];
+    }
+    starts
 }
 
 #[cfg(test)]
@@ -173,7 +185,9 @@ mod tests {
 
     use super::*;
     use crate::contact::narrow_phase::shortest_line;
-    use crate::math::{add, scale};
+    use crate::math::{Quad, Two, add, scale};
+
+    type Plain = Two<Quad<f32>>;
 
     impl SweptPoints {
         /// The least distance of two elements without their radii, at both ends.
@@ -204,7 +218,8 @@ mod tests {
             let points = SweptPoints { ends };
             let edges: Vec<ElementPoints<2, 2>> = (0..4).map(|k| ([4 * k, 4 * k + 1], [4 * k + 2, 4 * k + 3])).collect();
             let faces: Vec<ElementPoints<1, 3>> = (0..4).map(|k| ([4 * k], [4 * k + 1, 4 * k + 2, 4 * k + 3])).collect();
-            let (of_edges, of_faces) = (points.min_distances(&edges, share), points.min_distances(&faces, share));
+            let least = |lanes: Plain| lanes.to_array().concat();
+            let (of_edges, of_faces) = (least(points.min_distances(&edges, share)), least(points.min_distances(&faces, share)));
             for lane in 0..4 {
                 let nearest = [points.nearest(edges[lane], share), points.nearest(faces[lane], share)];
                 for (least, nearest) in [of_edges[lane], of_faces[lane]].into_iter().zip(nearest) {
@@ -214,7 +229,7 @@ mod tests {
                     prop_assert!(moves || nearest < 0.1 || least >= nearest - 2.0 * f32::EPSILON.sqrt());
                 }
                 // A pair has the same bits by itself.
-                prop_assert_eq!(points.min_distances(&faces[lane..=lane], share)[0], of_faces[lane]);
+                prop_assert_eq!(least(points.min_distances(&faces[lane..=lane], share))[0], of_faces[lane]);
             }
         }
 
@@ -228,8 +243,8 @@ mod tests {
             let points = SweptPoints { ends };
             let edges: Vec<ElementPoints<2, 2>> = (0..4).map(|k| ([4 * k, 4 * k + 1], [4 * k + 2, 4 * k + 3])).collect();
             let faces: Vec<ElementPoints<1, 3>> = (0..3).map(|k| ([4 * k], [4 * k + 1, 4 * k + 2, 4 * k + 3])).collect();
-            let of_edges = points.separated_centroids(&edges, share, enough);
-            let of_faces = points.separated_centroids(&faces, share, enough);
+            let of_edges = points.separated_centroids::<Plain, 2, 2>(&edges, share, enough);
+            let of_faces = points.separated_centroids::<Plain, 1, 3>(&faces, share, enough);
             for lane in 0..4 {
                 if of_edges & (1 << lane) != 0 {
                     prop_assert!(points.nearest(edges[lane], share) >= enough - 1e-5);
@@ -238,7 +253,7 @@ mod tests {
                     prop_assert!(points.nearest(faces[lane], share) >= enough - 1e-5);
                 }
                 // A pair has the same bit by itself.
-                prop_assert_eq!(points.separated_centroids(&edges[lane..=lane], share, enough) & 1, of_edges >> lane & 1);
+                prop_assert_eq!(points.separated_centroids::<Plain, 2, 2>(&edges[lane..=lane], share, enough) & 1, of_edges >> lane & 1);
             }
         }
     }

@@ -4,15 +4,15 @@
 //! within the candidate interval, by the motion bounds of the cloth's points. With AVX2 the lanes are wider, found at run
 //! time; they give the same bits.
 
-use crate::contact::closest_lanes::{self, closest, interpolate, of_lane};
+use crate::contact::closest_lanes::{Positions, closest, interpolate, of_lane};
 use crate::contact::collider::contact::{ColliderContact, Plane, cross_direction};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::narrow_phase::COINCIDENT;
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Lanes as _, Real, dot, sub};
 
-type Four = closest_lanes::Four<f64>;
-type FourPositions = closest_lanes::FourPositions<f64>;
+type Four = <f64 as Real>::Lanes;
+type FourPositions = Positions<Four>;
 
 /// Two elements whose boxes overlap.
 #[derive(Debug, Clone, Copy)]
@@ -161,11 +161,8 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
 
     #[inline(always)]
     fn shortest_line(&self) -> FourLines<N, M> {
-        let weights = closest::<f64, N, M>(self.ours, self.theirs);
-        let line = sub(
-            interpolate::<f64, N>(&self.ours, &weights.0),
-            interpolate::<f64, M>(&self.theirs, &weights.1),
-        );
+        let weights = closest::<f64, Four, N, M>(self.ours, self.theirs);
+        let line = sub(interpolate(&self.ours, &weights.0), interpolate(&self.theirs, &weights.1));
         let length = dot(line, line).sqrt();
         let mut normal = line.map(|along| along / length);
         let apart = (length - Four::splat(COINCIDENT)).above_zero();
