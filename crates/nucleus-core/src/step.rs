@@ -7,7 +7,7 @@
 //! 2. **passes**: Gauss-Seidel sweeps of the constraints alternate with contact passes, as the [`Schedule`] says;
 //! 3. **safeguard**: certifies that no pair of elements passed through each other, else applies fallbacks;
 //! 4. **velocities** follow the position corrections;
-//! 5. **restitution** adds the rebound of contacts.
+//! 5. **restitution** adds the rebound of contacts; **collision events** of particles follow.
 //!
 //! Free points take all of these stages at once ([`crate::particles::free`]).
 //!
@@ -42,6 +42,7 @@ use crate::integrate::local_wind::{Objects, update_local_wind};
 use crate::integrate::predict::{max_speeds, predict, update_velocities};
 use crate::output::StepReport;
 use crate::output::{Stage, StepObserver, SubstepIndex};
+use crate::particles::events::collision_events;
 use crate::particles::free::{advance_free_points, find_free_objects};
 use crate::particles::lifecycle::{age_particles, begin_particles};
 use crate::particles::population::Population;
@@ -253,6 +254,7 @@ fn solve_time_step<R: CompiledReal>(
     let is_free = &solver.contact.is_free;
     update_velocities(&solver.model.cloths, &mut solver.state, schedule.h, is_free, &solver.pool);
     apply_restitution(&mut solver.contact_pass(frame, schedule, span, counters));
+    collision_events(solver, span.to);
     observer.step(span.to, solver);
     ControlFlow::Continue(())
 }

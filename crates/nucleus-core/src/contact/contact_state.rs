@@ -100,7 +100,7 @@ impl<R: Real> ContactPoints<'_, R> {
         for (cloth, material) in grounded.filter_map(|(cloth, material)| Some((cloth, material.as_ref()?))) {
             for row in cloth.points() {
                 let thickness = self.rest_gap(material, [row], [R::ONE]);
-                if let Some(height) = self.contact.ground.height_at_end(self.state.position(row)) {
+                if let Some(height) = self.contact.ground.height(self.state.position(row)) {
                     states.raise_by_gap(row, height / thickness);
                 }
             }

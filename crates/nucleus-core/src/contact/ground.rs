@@ -57,13 +57,15 @@ pub struct Ground<R> {
     start: Option<Plane>,
     /// Height of each anchor above the plane at the start and at the end of the frame, in metres; empty without a plane.
     heights: [Vec<R>; 2],
+    /// The time that [`height`](Self::height) refers to, as a share of the frame.
+    pub now: f64,
 }
 
-checkpoint_struct!([R: Real] Ground<R> { columns: [], values: [end], parts: [], rebuilt: [start, heights] });
+checkpoint_struct!([R: Real] Ground<R> { columns: [], values: [end], parts: [], rebuilt: [start, heights, now] });
 
 impl<R: Real> Default for Ground<R> {
     fn default() -> Self {
-        Self { end: None, start: None, heights: [Vec::new(), Vec::new()] }
+        Self { end: None, start: None, heights: [Vec::new(), Vec::new()], now: 1.0 }
     }
 }
 
@@ -108,9 +110,12 @@ impl<R: Real> Ground<R> {
         self.end.is_some()
     }
 
-    /// Height of a position above the plane at the end of the frame, in metres; `None` without a plane.
-    pub fn height_at_end(&self, place: [f64; 3]) -> Option<f64> {
-        self.end.map(|plane| plane.height(place))
+    /// Height of a position above the plane at the time of the last step, in metres; `None` without a plane.
+    pub fn height(&self, place: [f64; 3]) -> Option<f64> {
+        match self.at(place, self.now) {
+            Some((_, height)) if self.now < 1.0 => Some(height),
+            _ => self.end.map(|plane| plane.height(place)),
+        }
     }
 
     /// The normal of the plane at a time, given as a share of the frame, and the height of a position above it in metres.

@@ -176,6 +176,7 @@ impl<R: Real> ContactSystem<R> {
     /// Moves every collider to a time of the frame, 0 to 1.
     pub fn set_time(&mut self, now: f64) {
         self.collider_states.iter_mut().for_each(|collider| collider.now = now);
+        self.ground.now = now;
     }
 
     /// Invalidates the motion bounds of a point whose position was set, among cloths and colliders.

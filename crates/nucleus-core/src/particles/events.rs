@@ -1,7 +1,7 @@
 //! Collision events: particles that emit, split or die when they collide (Maya's `event` command).
 //!
-//! A particle collides when it touches anything at the end of a substep and touched nothing at the end of the substep
-//! before, so a particle that rests or slides has collided once.
+//! A particle collides when it touches anything at the end of a time step and touched nothing at the end of the one before,
+//! so a particle that rests or slides has collided once. What it emits begins at the end of the substep.
 
 use nalgebra::Vector3;
 
@@ -9,23 +9,8 @@ use crate::contact::contact_state::list_contact_states;
 use crate::input::particles::unit_random;
 use crate::math::Real;
 use crate::output::ContactState;
-use crate::particles::population::Population;
+use crate::particles::population::{Population, Spawn};
 use crate::solver::Solver;
-
-/// A particle that an event adds.
-#[derive(Debug, Clone, Copy)]
-pub struct Spawn {
-    /// Its object, by the index of its cloth.
-    pub cloth: usize,
-    /// In metres.
-    pub position: Vector3<f64>,
-    /// In m/s.
-    pub velocity: Vector3<f64>,
-    /// In seconds.
-    pub age: f64,
-    /// In seconds.
-    pub lifespan: f64,
-}
 
 /// Random draws of one collision.
 struct Draws {
@@ -55,12 +40,12 @@ impl Draws {
     }
 }
 
-/// Finds the collisions of a substep, marks particles that die of them, and lists the new particles.
-pub fn collision_events<R: Real>(solver: &mut Solver<R>) -> Vec<Spawn> {
-    let mut spawned = Vec::new();
+/// Finds the collisions of a time step that ends at `time`, a share of the frame; marks particles that die of them, and lists the new particles.
+pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
     if solver.state.populations.iter().all(|population| population.events().is_empty()) {
-        return spawned;
+        return;
     }
+    solver.contact.set_time(time);
     let mut states = Vec::new();
     list_contact_states(&solver.model, &solver.state, &solver.contact, &mut states);
     let mut populations = std::mem::take(&mut solver.state.populations);
@@ -73,24 +58,18 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>) -> Vec<Spawn> {
             let row = first + at as u32;
             let place = Vector3::from(solver.state.position(row));
             let velocity = Vector3::from(solver.state.velocity[row as usize].xyz().map(R::to_f64));
-            happen(population, at, collision, [place, velocity], &mut spawned);
+            happen(population, at, collision, [place, velocity]);
         }
     }
     solver.state.populations = populations;
-    spawned
 }
 
 /// Everything that happens at one collision of one particle.
-fn happen(
-    population: &mut Population,
-    at: usize,
-    collision: u32,
-    [place, velocity]: [Vector3<f64>; 2],
-    spawned: &mut Vec<Spawn>,
-) {
+fn happen(population: &mut Population, at: usize, collision: u32, [place, velocity]: [Vector3<f64>; 2]) {
     let cloth = population.cloth();
     let facts = population.facts(at, 0.0);
     let mut dies = false;
+    let mut spawned = std::mem::take(&mut population.spawned);
     for (k, event) in (0u64..).zip(population.events()) {
         let mut draws = Draws { key: [facts.id ^ (k + 1) << 48, u64::from(collision) << 32] };
         if (event.count != 0 && event.count != collision) || draws.next() >= event.probability {
@@ -102,14 +81,15 @@ fn happen(
         for part in 0..emitted + parts {
             let direction = draws.about(velocity, event.spread);
             let lifespan = (event.lifespan[0] + event.lifespan[1] * (draws.next() - 0.5)).max(0.0);
-            let (cloth, age, lifespan) = match part < emitted {
-                true => (event.target.index(), 0.0, lifespan),
-                false => (cloth, facts.age, facts.lifespan),
+            let (cloth, age_of_whole, lifespan) = match part < emitted {
+                true => (event.target.index(), None, lifespan),
+                false => (cloth, Some(facts.age), facts.lifespan),
             };
             let velocity = direction * velocity.norm();
-            spawned.push(Spawn { cloth, position: place, velocity, age, lifespan });
+            spawned.push(Spawn { cloth, position: place, velocity, age_of_whole, lifespan });
         }
     }
+    population.spawned = spawned;
     if dies {
         population.kill(at);
     }

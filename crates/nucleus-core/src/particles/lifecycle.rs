@@ -11,9 +11,8 @@ use crate::input::frame::{Birth, ClothFrame, FrameInput};
 use crate::input::validation::is_in_range;
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
-use crate::particles::events::{Spawn, collision_events};
 use crate::particles::first_way::Obstacles;
-use crate::particles::population::{Population, close_up};
+use crate::particles::population::{Population, Spawn, close_up};
 use crate::particles::pruning::Crowd;
 use crate::particles::ramps::apply_ramps;
 use crate::schedule::Schedule;
@@ -39,7 +38,9 @@ pub fn age_particles<R: Real>(
         accelerate(solver, index, length);
         solver.state.populations[index].advance(length);
     }
-    let spawned = collision_events(solver);
+    let populations = solver.state.populations.iter_mut();
+    let spawned: Vec<Spawn> =
+        populations.flat_map(|population| std::mem::take(&mut population.spawned)).collect();
     for index in 0..solver.state.populations.len() {
         let population = &mut solver.state.populations[index];
         let (cloth, before) = (population.cloth(), population.len());
@@ -48,7 +49,7 @@ pub fn age_particles<R: Real>(
             remove_rows(solver, cloth, &kept);
         }
         add_births(solver, index, frame, [schedule.h, end], counters);
-        add_spawned(solver, index, &spawned, counters);
+        add_spawned(solver, index, (&spawned, length), counters);
     }
     apply_ramps(solver);
 }
@@ -88,11 +89,11 @@ fn accelerate<R: Real>(solver: &mut Solver<R>, index: usize, length: f64) {
         .for_each(|at| population.accelerate(at, velocity[first + at].xyz().map(R::to_f64), length));
 }
 
-/// Adds the particles of collision events to an object.
+/// Adds the particles of collision events in a substep of `length` seconds to an object.
 fn add_spawned<R: Real>(
     solver: &mut Solver<R>,
     index: usize,
-    spawned: &[Spawn],
+    (spawned, length): (&[Spawn], f64),
     counters: &mut ContactCounters,
 ) {
     let Solver { model, state, contact, .. } = solver;
@@ -106,7 +107,8 @@ fn add_spawned<R: Real>(
             continue;
         }
         counters.births += 1;
-        if population.add(spawn.age, spawn.lifespan, spawn.velocity.into()) {
+        let age = spawn.age_of_whole.map_or(0.0, |age| age + length);
+        if population.add(age, spawn.lifespan, spawn.velocity.into()) {
             let row = row_of + population.len() as u32 - 1;
             set_row(state, row as usize, spawn.position, spawn.velocity, mass);
         } else {
@@ -183,7 +185,7 @@ fn add_births<R: Real>(
         begin_contact_of(state, contact, cloth, first..last);
         if !frame.fields_per_substep {
             let interval = frame.duration * (1.0 - end).max(f64::EPSILON);
-            update_fields_of((cloth, first..last), state, frame, interval, pool);
+            update_fields_of((cloth, &model.cloths[cloth]), first..last, state, frame, interval, pool);
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The living particles of one object: their numbers, ages and lifespans.
 
+use nalgebra::Vector3;
+
 use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::input::frame::Birth;
 use crate::input::particles::{CollisionEvent, ParticleFacts, ParticleRamp, RampInput, RampTarget};
@@ -22,6 +24,21 @@ impl Rotation {
 
 encode_struct!([] Rotation { orientation: [f64; 4], spin: [f64; 3] });
 
+/// A particle that an event adds, at the place and with the velocity of the collision.
+#[derive(Debug, Clone, Copy)]
+pub struct Spawn {
+    /// Its object, by the index of its cloth.
+    pub cloth: usize,
+    /// In metres.
+    pub position: Vector3<f64>,
+    /// In m/s.
+    pub velocity: Vector3<f64>,
+    /// Of a part, the age in seconds of the whole at the start of the substep.
+    pub age_of_whole: Option<f64>,
+    /// In seconds.
+    pub lifespan: f64,
+}
+
 /// The living particles of one object, in the order of birth, which is that of their rows.
 #[derive(Debug, Clone)]
 pub struct Population {
@@ -41,10 +58,12 @@ pub struct Population {
     /// reads the acceleration.
     last_velocity: Vec<[f64; 3]>,
     acceleration: Vec<f64>,
-    /// Whether each particle touched anything at the end of the last substep, and how often it has collided; empty without
+    /// Whether each particle touched anything at the end of the last time step, and how often it has collided; empty without
     /// collision events.
     touches: Vec<bool>,
     collisions: Vec<u32>,
+    /// What its collisions in this substep add.
+    pub(super) spawned: Vec<Spawn>,
     /// Factors by particle on the point field, the viscosity and the surface tension; empty without a ramp.
     field_factors: Vec<f32>,
     viscosity_factors: Vec<f32>,
@@ -77,7 +96,7 @@ checkpoint_struct!([] Population {
     values: [id, born, lifespan, mass, last_velocity, acceleration, touches, collisions, rotations, next_id, now],
     parts: [],
     rebuilt: [
-        cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, rotates, topology, field_factors, viscosity_factors,
+        spawned, cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, rotates, topology, field_factors, viscosity_factors,
         tension_factors
     ],
 });
@@ -115,6 +134,7 @@ impl Population {
             acceleration: Vec::new(),
             touches: Vec::new(),
             collisions: Vec::new(),
+            spawned: Vec::new(),
             rotations: Vec::new(),
             rotates: particles.rotates,
             topology: 0,
@@ -251,10 +271,11 @@ impl Population {
         self.ramps.iter().any(|ramp| ramp.input == RampInput::Acceleration)
     }
 
-    /// Notices whether a particle touches anything. Returns the number of the collision if one begins.
+    /// Notices whether a particle touches anything. Returns the number of the collision if one begins; none begins once it
+    /// is to die.
     pub fn notice(&mut self, at: usize, touches: bool) -> Option<u32> {
         let before = std::mem::replace(&mut self.touches[at], touches);
-        if before || !touches {
+        if before || !touches || self.lifespan[at] <= 0.0 {
             return None;
         }
         self.collisions[at] = self.collisions[at].saturating_add(1);
