@@ -48,7 +48,9 @@ pub fn link_sweep<R: Real>(frame: &FrameInput, at: usize, h: f64) -> (LinkSweep<
         let friction = constraint.friction.clamp(0.0, 1.0);
         let kept = (1.0 - friction) * h / ((1.0 - friction) * h + friction * COUNT_PERIOD);
         let taken = 1.0 - kept.powf(1.0 / f64::from(sweeps));
-        tangent = (tangent.0 * taken, tangent.1 * kept / (1.0 - kept).max(f64::MIN_POSITIVE));
+        // A friction of 1 locks, however weak the link is.
+        let share = tangent.0 / (tangent.0 + (1.0 - tangent.0) * kept).max(f64::MIN_POSITIVE);
+        tangent = (share * taken, tangent.1 * kept / (1.0 - kept).max(f64::MIN_POSITIVE));
     }
     let tangent = strength(tangent, pulls_only);
     let bend = strength(soft(constraint.bend_strength, BENDING_PER_RESISTANCE), false);

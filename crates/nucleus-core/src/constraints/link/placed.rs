@@ -22,6 +22,9 @@ pub(super) enum Direction {
     Tangent,
 }
 
+/// Sine of the angle to the normal within which a link on an edge is above it.
+const ABOVE: f64 = 1e-3;
+
 /// Steps of a walk from face to face, at most.
 const MAX_STEPS: usize = 64;
 
@@ -117,6 +120,13 @@ impl<R: Real> Placed<'_, R> {
             }
         }
         (corners, weights)
+    }
+
+    /// Whether a link leaves the surface at a place on an edge sideways. Where faces meet flat its line is their normal, and it
+    /// is above both.
+    pub(super) fn is_beside(&self, (corners, weights): ([u32; 3], [f64; 3]), line: Point) -> bool {
+        let is_on_edge = weights.iter().any(|weight| *weight <= 0.0);
+        is_on_edge && line.cross(&self.normal(corners, weights, false)).norm() > ABOVE
     }
 
     /// The unit normal at a place: of its face, or interpolated between those of the corners, so that it changes smoothly

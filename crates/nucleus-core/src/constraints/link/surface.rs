@@ -42,9 +42,8 @@ impl<R: Real> ConstraintLinks<R> {
                 let foot = placed.at(corners, weights);
                 let place = foot + vector(link, &self.surface[k].ends, state, prescribed, time);
                 let nearest = placed.nearest(place, corners, weights);
-                let is_on_edge = nearest.1.iter().any(|weight| *weight <= 0.0);
-                let line = place - placed.at(nearest.0, nearest.1);
-                let beside = line.try_normalize(0.0).filter(|_| is_on_edge);
+                let line = (place - placed.at(nearest.0, nearest.1)).try_normalize(0.0);
+                let beside = line.filter(|line| placed.is_beside(nearest, *line));
                 (placed.side(nearest.0, nearest.1), beside)
             });
             if let Some((side, beside)) = moved {
@@ -112,7 +111,9 @@ impl<R: Real> ConstraintLinks<R> {
             return;
         }
         let is_physical = self.layout.is_physical;
+        let dropped = frame.dropoff.map_or(1.0, |dropoff| dropoff.at(d.norm()));
         let pull = |strength: &LinkStrength<R>, factor: f64, c: f64| {
+            let factor = factor * dropped;
             let LinkStrength { share, compliance, .. } = strength;
             let sides =
                 if c > 0.0 { [share.above, compliance.above] } else { [share.below, compliance.below] };
@@ -127,7 +128,9 @@ impl<R: Real> ConstraintLinks<R> {
                     true => (gradient.motion(state) + unit.dot(&travel)).max(0.0),
                     false => d.dot(&unit),
                 };
-                pull(&sweep.tangent, link.tangent_strength, length)
+                // A count of friction is a share of the motion: it has no strength that a component could scale.
+                let is_share = frame.slides && !is_physical;
+                pull(&sweep.tangent, if is_share { 1.0 } else { link.tangent_strength }, length)
             }
             Direction::Normal => {
                 // A sliding point without a fixed side keeps the distance on the side where it is now.

@@ -154,7 +154,7 @@ impl Forming<'_> {
     }
 
     fn within_distance(&self, from: &Member, to: &Member, same: bool) -> Vec<[u32; 2]> {
-        let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
+        let reach = self.reach();
         let (ours, theirs) = (self.all_corners(from), self.all_corners(to));
         let nearby = Nearby::new(theirs.iter().map(Vec::as_slice));
         let mut pairs = Vec::new();
@@ -225,18 +225,29 @@ impl Forming<'_> {
 
     /// Keeps each pair with the probability of `connectionDensity`, over its length by `connectionDensityRange`.
     fn thinned(&self, mut pairs: Vec<[u32; 2]>, [from, to]: [&Member; 2]) -> Vec<[u32; 2]> {
-        let density = self.values.number(&con::CONNECTION_DENSITY);
-        let ramp = self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE);
-        if density >= 1.0 && ramp.iter().all(|point: &RampPoint| point.value >= 1.0) {
-            return pairs;
-        }
-        let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
         pairs.retain(|&[x, y]| {
-            let length = distance(&self.corners(from, x), &self.corners(to, y));
-            let share = density * ramp_at(&ramp, (length / reach.max(f64::MIN_POSITIVE)).min(1.0));
-            chance(x, y) < share
+            self.is_dense() || self.keeps([x, y], distance(&self.corners(from, x), &self.corners(to, y)))
         });
         pairs
+    }
+
+    /// Whether all pairs are kept.
+    fn is_dense(&self) -> bool {
+        let ramp = self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE);
+        self.values.number(&con::CONNECTION_DENSITY) >= 1.0
+            && ramp.iter().all(|point: &RampPoint| point.value >= 1.0)
+    }
+
+    /// Whether a pair of elements at a distance in metres is kept.
+    fn keeps(&self, [x, y]: [u32; 2], distance: f64) -> bool {
+        let ramp = self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE);
+        let place = (distance / self.reach().max(f64::MIN_POSITIVE)).min(1.0);
+        chance(x, y) < self.values.number(&con::CONNECTION_DENSITY) * ramp_at(&ramp, place)
+    }
+
+    /// `maxDistance` in metres.
+    fn reach(&self) -> f64 {
+        self.values.number(&con::MAX_DISTANCE) * self.metres
     }
 
     /// Adds the links that join two elements: one for a point, two for an edge, three for a face. Two edges hinge, faces
@@ -299,12 +310,19 @@ impl Forming<'_> {
         let nearby = Nearby::new(faces.iter().map(Vec::as_slice));
         let walks = self.values.slides() && !surface.sheet.is_empty();
         let sheet = walks.then(|| Sheet::new(surface, self.places));
+        let reach = match self.values.choice(&con::CONNECTION_METHOD) {
+            MAX_DISTANCE => self.reach(),
+            _ => f64::INFINITY,
+        };
         let mut links = Vec::new();
         for member in others {
             for (point, element) in member.points() {
                 let at = self.places.point(member.object, point);
                 let of = |face: u32| (foot(&faces[face as usize], at).place - at).norm();
-                let Some((_, face)) = nearby.nearest(at.x, of) else { continue };
+                let Some((distance, face)) = nearby.nearest(at.x, of) else { continue };
+                if distance > reach || !self.keeps([element, face], distance) {
+                    continue;
+                }
                 let start = (surface.elements.face(face as usize), &faces[face as usize][..]);
                 let (points, polygon) =
                     sheet.as_ref().and_then(|sheet| sheet.nearest(at, start)).unwrap_or(start);
