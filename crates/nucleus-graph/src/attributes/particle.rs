@@ -54,7 +54,7 @@ node_table! {
         /// Emits in world space.
         EMISSION_IN_WORLD: bool = toggle("emissionInWorld", "eiw", true).elsewhere("particles are always emitted in world space");
         /// Largest number of particles; -1 for no limit.
-        MAX_COUNT: i64 = int("maxCount", "mxc", -1).solved("nucleus_graph::compile::emission");
+        MAX_COUNT: i64 = int("maxCount", "mxc", -1).solved("nucleus_graph::compile::emission").fixed();
         /// Share of the particles that are emitted.
         LEVEL_OF_DETAIL: f64 = float("levelOfDetail", "lod", 1.0).min(0.0).max(1.0).solved("nucleus_graph::compile::emission");
         /// Share of the emitter's velocity that particles inherit.

@@ -21,11 +21,13 @@ mod shapes;
 mod start;
 mod surface;
 
+use std::collections::VecDeque;
+
 use nalgebra::Vector3;
 use nucleus_core::{Birth, ClothId, InvalidInput};
 
 use crate::animation::Affine;
-use crate::attributes::{Choice, particle, point_emitter};
+use crate::attributes::{Choice, nucleus, particle, point_emitter};
 use crate::graph::{EvalContext, Graph, NodeId};
 
 use super::attachments::AttachmentState;
@@ -77,27 +79,28 @@ impl Compiler<'_> {
         let graph = &self.scene.graph;
         let time = self.scene.time;
         let (first, last) = (self.program.start, time.end.max(self.program.start));
-        let [mut window, mut sum, mut most] = [0.0f64; 3];
-        let lives = lifespan::longest(graph, node, [first, last]) * time.fps;
-        let mut counts: Vec<f64> = Vec::new();
+        let lives = lifespan::longest(graph, node, [first, last]);
+        let [mut window, mut length, mut born] = [0.0f64; 3];
+        let mut frames: VecDeque<[f64; 2]> = VecDeque::new();
         for frame in first..last {
             let [from, to] = [frame, frame + 1].map(|frame| graph.at(frame as f64));
+            let seconds = to.get(self.program.node, &nucleus::TIME_SCALE) / time.fps;
             let largest = |emitter: &Emitter| {
-                let [a, b] = emitter.rates([&from, &to], 1.0 / time.fps);
+                let [a, b] = emitter.rates([&from, &to], seconds);
                 a.max(b)
             };
-            let rates = emitters.iter().map(largest);
-            counts.push(rates.sum::<f64>() / time.fps);
-            sum += counts[counts.len() - 1];
-            window += counts[counts.len() - 1];
-            // One frame more than a life, for the frames that it touches.
-            let gone = counts.len() as f64 - (lives.ceil() + 2.0);
-            if gone >= 0.0 {
-                window -= counts[gone as usize];
+            let count = emitters.iter().map(largest).sum::<f64>() * seconds;
+            frames.push_back([count, seconds]);
+            (window, length) = (window + count, length + seconds);
+            // Those of the oldest frame may be alive until a life has passed since its end.
+            while let Some(&[gone, of]) = frames.front()
+                && length - of - seconds >= lives
+            {
+                frames.pop_front();
+                (window, length) = (window - gone, length - of);
             }
-            most = most.max(window);
+            born = born.max(window);
         }
-        let born = if lives.is_finite() { most } else { sum };
         // Rates may be keyed above their values at whole frames.
         let room = (born * 1.05).ceil() + emitters.len() as f64 + 1.0;
         let all = (points as u64).saturating_add(room as u64).checked_next_power_of_two().unwrap_or(u64::MAX);
@@ -210,7 +213,8 @@ impl EvaluationInterval<'_> {
         let flight = self.flight(emitter, seconds);
         let lifespan = Lifespan::new(emitter.particles, &self.to);
         // An object has no room for more.
-        let room = self.nucleus.room_of(emitter.cloth);
+        let has_room = self.to.get(emitter.particles, &particle::MAX_COUNT) != 0;
+        let room = if has_room { self.nucleus.room_of(emitter.cloth) } else { 0 };
         let earlier = births.len();
         let made = (count as u64).min(room);
         kept.births_refused = kept.births_refused.saturating_add(count as u64 - made);
@@ -232,6 +236,7 @@ impl EvaluationInterval<'_> {
             seconds,
             inherit: self.to.get(emitter.particles, &particle::INHERIT_FACTOR),
             seed: self.to.get(emitter.particles, &particle::SEED) as u64,
+            general_seed: self.to.get(emitter.particles, &particle::GENERAL_SEED) as u64,
         }
     }
 }
@@ -251,6 +256,8 @@ struct SharedFlight<'a> {
     seconds: f64,
     inherit: f64,
     seed: u64,
+    /// Seed of lifespans.
+    general_seed: u64,
 }
 
 impl SharedFlight<'_> {
@@ -270,7 +277,7 @@ impl SharedFlight<'_> {
             time,
             position: units.point(start.position),
             velocity: units.point(velocity),
-            lifespan: lifespan.draw(&mut random),
+            lifespan: lifespan.draw(&mut random.with_seed(self.general_seed)),
         })
     }
 }

@@ -16,6 +16,11 @@ impl Random {
         Self { state: key.into_iter().fold(0x9e37_79b9_7f4a_7c15, |state, word| mix(state ^ mix(word))) }
     }
 
+    /// Other numbers of the same key, for a seed other than 0.
+    pub(super) fn with_seed(self, seed: u64) -> Self {
+        Self { state: self.state ^ mix(seed) }
+    }
+
     /// The next number, from 0 to below 1.
     pub(super) fn next(&mut self) -> f64 {
         // SplitMix64 (Steele et al. 2014): a counter, mixed.

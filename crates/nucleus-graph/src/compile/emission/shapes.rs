@@ -139,10 +139,12 @@ impl VolumeShape {
 
     /// A place inside, evenly spread.
     fn place(&self, random: &mut Random) -> Vec3 {
+        if self.is_torus() {
+            return self.place_in_torus(random);
+        }
         // Rejection needs neither roots nor arcs; a bounding box is at worst a quarter full.
         for _ in 0..64 {
-            let drawn: Vec3 = Vec3::from_fn(|_, _| random.between(-1.0, 1.0));
-            let place = self.stretched(drawn);
+            let place: Vec3 = Vec3::from_fn(|_, _| random.between(-1.0, 1.0));
             if self.contains(place) {
                 return self.swept(place, random);
             }
@@ -150,14 +152,21 @@ impl VolumeShape {
         Vec3::zeros()
     }
 
-    /// From the unit cube to the bounding box of the shape.
-    fn stretched(&self, place: Vec3) -> Vec3 {
-        let wide = 1.0 + self.section;
-        if self.is_torus() {
-            Vec3::new(place.x * wide, place.y * self.section, place.z * wide)
-        } else {
-            place
+    /// A place in a ring of radius 1: in its section by rejection, more often outside than inside of the ring, at any angle.
+    fn place_in_torus(&self, random: &mut Random) -> Vec3 {
+        let section = self.section.abs();
+        let mut place = Vec3::x();
+        for _ in 0..64 {
+            let [out, up] = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
+            let across = 1.0 + section * out;
+            let is_inside = out * out + up * up <= 1.0 && across >= 0.0;
+            if is_inside && random.between(0.0, 1.0 + section) <= across {
+                place = Vec3::new(across, section * up, 0.0);
+                break;
+            }
         }
+        let (sin, cos) = sin_cos_degrees(random.between(0.0, self.sweep.min(360.0)));
+        Vec3::new(place.x * cos, place.y, place.x * sin)
     }
 
     fn contains(&self, place: Vec3) -> bool {
@@ -168,10 +177,7 @@ impl VolumeShape {
             CYLINDER => across <= 1.0,
             // The tip is at the bottom, the base of radius 1 at the top.
             CONE => across <= (place.y + 1.0) / 2.0,
-            _ => {
-                let from_ring = across - 1.0;
-                from_ring * from_ring + place.y * place.y <= self.section * self.section
-            }
+            _ => false,
         }
     }
 
@@ -246,6 +252,23 @@ mod tests {
             assert!((share - upper).abs() < 0.01, "{shape}: {share}");
             let mean = places.iter().map(|p| p.x * p.x + p.z * p.z).sum::<f64>() / places.len() as f64;
             assert!((mean / square - 1.0).abs() < 0.01, "{shape}: {mean}");
+        }
+    }
+
+    #[test]
+    fn a_thin_ring_is_filled_evenly_and_at_the_angles_of_its_sweep() {
+        for (section, sweep) in [(0.01, 360.0), (0.0, 360.0), (1e-9, 90.0)] {
+            let ring = VolumeShape { section, sweep, ..volume(4) };
+            let mut random = Random::new([7, 1, 0]);
+            let places: Vec<Vec3> = (0..4000).map(|_| ring.place(&mut random)).collect();
+            for place in &places {
+                let across = (place.x * place.x + place.z * place.z).sqrt();
+                assert!(((across - 1.0).powi(2) + place.y * place.y).sqrt() <= section + 1e-12, "{place}");
+                assert!(sweep == 360.0 || place.x >= 0.0 && place.z >= 0.0);
+            }
+            let mean = places.iter().sum::<Vec3>() / places.len() as f64;
+            let expected = if sweep == 360.0 { 0.0 } else { std::f64::consts::FRAC_2_PI };
+            assert!((mean.x - expected).abs() < 0.05 && (mean.z - expected).abs() < 0.05, "{mean}");
         }
     }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::animation::sin_cos_degrees;
-use crate::attributes::{Painting, Value, point_emitter, surface_shape};
+use crate::attributes::{Painting, Value, n_base, n_cloth, point_emitter, surface_shape};
 use crate::compile::compiler::Compiler;
 use crate::compile::sources::EmittingMesh;
 use crate::graph::{EvalContext, NodeId};
@@ -28,6 +28,16 @@ impl Compiler<'_> {
         };
         if self.broken.contains(&mesh) {
             return None;
+        }
+        let feeds = |cloth: &NodeId| graph.source(*cloth, &n_base::INPUT_MESH) == Some(mesh);
+        if let Some(cloth) = graph.of_type(&n_cloth::N_CLOTH).map(|(cloth, _)| cloth).find(feeds) {
+            let [mesh, cloth] = [mesh, cloth].map(|id| graph.node(id).name());
+            let message = format!(
+                "`{}` emits from `{mesh}` where it is animated, and not where the cloth `{cloth}` goes",
+                node.name()
+            );
+            let warning = self.findings.warning(&place, message);
+            warning.help("nothing emits from simulated cloth yet: emit from a mesh that moves with it");
         }
         let shape = self.geometry.animated(self.scene, mesh, self.findings)?;
         let surface = self.geometry.surface(self.scene, mesh, self.findings)?;
