@@ -9,12 +9,14 @@ use nalgebra::Vector3;
 use nucleus_audit::{Body, CollisionMesh, intersections};
 use nucleus_core::{ClothFrame, ClothId, Faces, FrameInput, Surface};
 
-use crate::attributes::nucleus;
+use crate::attributes::{Choice, dynamic_constraint, nucleus};
 use crate::audit::{AuditScope, collision_rules};
 use crate::compile::{NucleusProgram, Object, ObjectKind, Program};
 use crate::diagnostic::Findings;
 use crate::scene::{Diagnostic, Scene};
 
+/// `connectionMethod`.
+const WITHIN_MAX_DISTANCE: Choice = Choice(1);
 /// Acceleration of gravity, in m/s², above which it is taken for centimetres.
 const MAX_GRAVITY: f64 = 100.0;
 /// Width of a cloth in metres above which a scene without `spaceScale` is taken for centimetres.
@@ -31,6 +33,7 @@ pub fn first_frame_warnings(scene: &Scene, program: &Program) -> Vec<Diagnostic>
     for (nucleus, input) in program.nuclei().iter().zip(&inputs) {
         warn_of_gravity(scene, nucleus, input, &mut findings);
         warn_of_scale(scene, program, nucleus, &mut findings);
+        warn_of_missing_links(scene, nucleus, input, &mut findings);
     }
     for object in program.objects() {
         if let ObjectKind::Cloth(cloth) = object.kind {
@@ -52,6 +55,29 @@ fn warn_of_gravity(scene: &Scene, nucleus: &NucleusProgram, input: &FrameInput, 
     let warning = findings.warning(&scene.source.place(&format!("{name}.gravity")), message);
     warning
         .help("gravity is in m/s² whatever the unit of length: leave it at 9.8 and set `spaceScale: 0.01` for centimetres");
+}
+
+/// A constraint whose components are too far apart, or too few, joins nothing.
+fn warn_of_missing_links(
+    scene: &Scene,
+    nucleus: &NucleusProgram,
+    input: &FrameInput,
+    findings: &mut Findings,
+) {
+    for (id, constraint) in nucleus.linking_constraints().zip(&input.constraints) {
+        if constraint.formed.as_ref().is_some_and(Vec::is_empty) {
+            let name = scene.graph.node(id).name();
+            let method = scene.graph.node(id).get(&dynamic_constraint::CONNECTION_METHOD);
+            let message = format!("`{name}` joins nothing at the first frame");
+            let warning = findings.warning(&scene.source.place(name), message);
+            warning.help(match method == WITHIN_MAX_DISTANCE {
+                true => {
+                    "no elements are within `maxDistance` of each other, or `connectionDensity` leaves none"
+                }
+                false => "it needs two elements at least; particles must be there when it is enabled",
+            });
+        }
+    }
 }
 
 /// A scene in centimetres without `spaceScale` falls a hundred times too slowly.

@@ -49,21 +49,22 @@ pub fn update_fields<R: Real>(
         return;
     }
     state.field.resize(state.velocity.len(), Row4::ZERO);
-    for (cloth, points) in model.cloths.iter().map(ClothModel::points).enumerate() {
-        update_fields_of((cloth, points), state, frame, interval, pool);
+    for (index, cloth) in model.cloths.iter().enumerate() {
+        update_fields_of((index, cloth), cloth.points(), state, frame, interval, pool);
     }
 }
 
 /// Evaluates the fields at some points of a cloth.
 pub fn update_fields_of<R: Real>(
-    (cloth, rows): (usize, Range<u32>),
+    (index, cloth): (usize, &ClothModel<R>),
+    rows: Range<u32>,
     state: &mut State<R>,
     frame: &FrameInput,
     interval: f64,
     pool: &ThreadPool,
 ) {
     let felt: Vec<(&Field, f64)> =
-        frame.fields.iter().filter_map(|field| Some((field, field.share_of(cloth)?))).collect();
+        frame.fields.iter().filter_map(|field| Some((field, field.share_of(index)?))).collect();
     if felt.is_empty() || state.field.is_empty() {
         return;
     }
@@ -77,7 +78,7 @@ pub fn update_fields_of<R: Real>(
         #[allow(unsafe_code)]
         let run = unsafe { accelerations.run(from..to) };
         for (row, acceleration) in (from..to).zip(run) {
-            let inverse_mass = points.displacement[row as usize].0[3].to_f64();
+            let inverse_mass = cloth.inverse_field_mass(row, points.displacement[row as usize].0[3].to_f64());
             let position = Vector3::from(points.position(row));
             let velocity = Vector3::from(points.velocity[row as usize].xyz().map(R::to_f64));
             let sum: Vector3<f64> = felt

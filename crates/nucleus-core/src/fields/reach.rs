@@ -7,28 +7,39 @@ use crate::input::fields::{Reach, Volume, VolumeShape};
 impl Reach {
     /// The share of the field at a point, given from the centre; 0 where it does not reach. Without a largest distance the
     /// field falls off as (1 + d)^-attenuation, d in scene units; with one, as (1 - d / largest)^attenuation, times the
-    /// falloff curve. Newton's own law has the distance in it (`has_own_law`).
+    /// falloff curve; in a volume d / largest is the way to its edge. Newton's own law has the distance in it (`has_own_law`).
     pub(crate) fn share(&self, from_center: Vector3<f64>, has_own_law: bool) -> f64 {
         if self.volume.is_some_and(|volume| !volume.acts_at(from_center)) {
             return 0.0;
         }
-        let bounded = self.max_distance < f64::INFINITY;
-        if !bounded && (has_own_law || self.attenuation == 0.0) {
+        let relative = self.relative_distance(from_center);
+        if relative.is_none() && (has_own_law || self.attenuation == 0.0) {
             return 1.0;
         }
-        let distance = from_center.norm();
-        if distance > self.max_distance {
+        if relative.is_some_and(|relative| relative > 1.0) {
             return 0.0;
         }
-        let curve = if bounded { self.falloff_at(distance / self.max_distance) } else { 1.0 };
+        let curve = relative.map_or(1.0, |relative| self.falloff_at(relative));
         let base =
-            if bounded { 1.0 - distance / self.max_distance } else { 1.0 / (1.0 + distance / self.unit) };
+            relative.map_or_else(|| 1.0 / (1.0 + from_center.norm() / self.unit), |relative| 1.0 - relative);
         match self.attenuation {
             _ if has_own_law => curve,
             0.0 => curve,
             1.0 => curve * base,
             exponent => curve * libm::pow(base, exponent),
         }
+    }
+
+    /// The distance relative to the largest, or to that of the volume's edge; `None` where the field has no end. A field of no
+    /// reach does not act at its centre either.
+    fn relative_distance(&self, from_center: Vector3<f64>) -> Option<f64> {
+        if self.max_distance <= 0.0 {
+            return Some(f64::INFINITY);
+        }
+        if self.max_distance < f64::INFINITY {
+            return Some(from_center.norm() / self.max_distance);
+        }
+        self.volume.filter(|_| self.falls_off_in_volume).map(|volume| volume.depth(from_center).min(1.0))
     }
 
     /// The falloff curve at a share of the largest distance.
@@ -43,6 +54,23 @@ impl Reach {
 impl Volume {
     fn acts_at(&self, from_center: Vector3<f64>) -> bool {
         self.contains(self.to_local * from_center - self.offset) != self.is_excluded
+    }
+
+    /// How far a point is from the centre of a cube or a sphere, from the axis of a cylinder or a cone, or from the ring of a
+    /// torus: 0 there, 1 at the edge.
+    fn depth(&self, from_center: Vector3<f64>) -> f64 {
+        let at = self.to_local * from_center - self.offset;
+        let across = (at.x * at.x + at.z * at.z).sqrt();
+        match self.shape {
+            VolumeShape::Cube => at.amax(),
+            VolumeShape::Sphere => at.norm(),
+            VolumeShape::Cylinder => across,
+            VolumeShape::Cone => across / ((at.y + 1.0) / 2.0).max(f64::MIN_POSITIVE),
+            VolumeShape::Torus => {
+                let from_ring = across - 1.0;
+                (from_ring * from_ring + at.y * at.y).sqrt() / self.section.max(f64::MIN_POSITIVE)
+            }
+        }
     }
 
     /// Whether a point in its own space is inside.
@@ -81,9 +109,40 @@ mod tests {
         let bounded = Reach { max_distance: 4.0, ..near };
         assert!((bounded.share(Vector3::x(), false) - 0.5625).abs() < 1e-12);
         assert_eq!(bounded.share(Vector3::x() * 4.1, false), 0.0);
+        for max_distance in [0.0, -1.0] {
+            let nowhere = Reach { max_distance, ..Reach::everywhere() };
+            assert_eq!(nowhere.share(Vector3::zeros(), false), 0.0);
+        }
         let mut curved = Reach { max_distance: 4.0, ..Reach::everywhere() };
         curved.falloff = std::array::from_fn(|k| k as f64 / (Reach::SAMPLES - 1) as f64);
         assert!((curved.share(Vector3::x() * 3.0, false) - 0.75).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_field_falls_off_in_its_volume_up_to_the_edge() {
+        let volume = |shape| Volume {
+            shape,
+            to_local: Matrix3::identity() / 2.0,
+            offset: Vector3::zeros(),
+            section: 0.25,
+            sweep: None,
+            is_excluded: false,
+        };
+        let places = [
+            (VolumeShape::Cube, [0.0, 1.0, 0.5], 0.5),
+            (VolumeShape::Sphere, [0.6, 0.0, 0.8], 0.5),
+            (VolumeShape::Cylinder, [0.6, 1.9, 0.8], 0.5),
+            (VolumeShape::Cone, [0.25, 0.0, 0.0], 0.25),
+            (VolumeShape::Torus, [2.25, 0.0, 0.0], 0.5),
+        ];
+        for (shape, at, depth) in places {
+            let volume = Some(volume(shape));
+            let linear = Reach { attenuation: 1.0, volume, falls_off_in_volume: true, ..Reach::everywhere() };
+            let found = linear.share(at.into(), false);
+            assert!((found - (1.0 - depth)).abs() < 1e-12, "{shape:?}: {found}");
+            let everywhere = Reach { falls_off_in_volume: false, attenuation: 0.0, ..linear };
+            assert_eq!(everywhere.share(at.into(), false), 1.0);
+        }
     }
 
     #[test]

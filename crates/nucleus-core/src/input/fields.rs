@@ -16,7 +16,8 @@ pub struct Field {
     pub targets: Vec<(ClothId, f64)>,
 }
 
-/// The effect of a field at a point. Forces are in newtons, so light points accelerate more than heavy ones.
+/// The effect of a field at a point. Forces are in newtons, so light points accelerate more than heavy ones. On cloth whose
+/// mass is per area they are newtons per square metre: its motion does not depend on the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldKind {
     /// The same acceleration everywhere, in m/s².
@@ -38,7 +39,7 @@ pub enum FieldKind {
     Newton {
         /// Acceleration in m/s² at a distance of a metre.
         magnitude: f64,
-        /// No stronger than at this distance, in metres.
+        /// None within this distance, in metres.
         min_distance: f64,
     },
     /// Resistance against motion.
@@ -130,6 +131,8 @@ pub struct Reach {
     pub falloff: [f64; Self::SAMPLES],
     /// Acts inside of a volume only.
     pub volume: Option<Volume>,
+    /// Without a largest distance, falls off from the centre or the axis of the volume to its edge.
+    pub falls_off_in_volume: bool,
 }
 
 impl Reach {
@@ -145,6 +148,7 @@ impl Reach {
             max_distance: f64::INFINITY,
             falloff: [1.0; Self::SAMPLES],
             volume: None,
+            falls_off_in_volume: false,
         }
     }
 }

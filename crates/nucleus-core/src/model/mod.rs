@@ -93,6 +93,10 @@ pub struct ClothModel<R> {
     pub alternates_direction: bool,
     /// The number of `pointMass`, whatever its unit; aerodynamic forces are divided by it.
     pub point_mass: f64,
+    /// Whether that is per area.
+    is_mass_per_area: bool,
+    /// Factors on the mass, by row; empty where they are 1.
+    mass_map: Vec<f64>,
     /// Mean rest length of an edge in metres; zero without edges, and where no contact is possible.
     pub edge_length: f64,
     /// Whether damping is ever non-zero.
@@ -142,6 +146,8 @@ impl<R: Real> ClothModel<R> {
                 || !cloth.warp.is_empty()
                 || surface.faces.iter().any(|face| face.len() % 2 == 1),
             point_mass,
+            is_mass_per_area: matches!(cloth.mass, Mass::PerArea(_)),
+            mass_map: Vec::new(),
             edge_length: 0.0,
             damps: cloth.lists.damp,
             strength_maps: StrengthMaps::default(),
@@ -218,9 +224,10 @@ impl<R: Real> ClothModel<R> {
         if cloth.lists.air {
             model.air = maps.air(model.points());
         }
-        let by_row = |factors: &Vec<f64>| model.points().map(|row| factors[point(row)]).collect();
-        let field_map = Some(&cloth.vertex_maps.field_magnitude).filter(|map| !map.is_empty()).map(by_row);
-        model.field_map = field_map.unwrap_or_default();
+        let by_row = |factors: &Vec<f64>| model.points().map(|row| factors[point(row)]).collect::<Vec<_>>();
+        let maps = [&cloth.vertex_maps.field_magnitude, &cloth.vertex_maps.mass];
+        let maps = maps.map(|map| if map.is_empty() { Vec::new() } else { by_row(map) });
+        [model.field_map, model.mass_map] = maps;
         if *order_of_links == LinkOrder::Parallel {
             let groups = model.stretch.groups().iter().chain(model.shear.groups());
             model.valence = link_order::valence(groups, first, model.blocks.columns());
@@ -248,6 +255,16 @@ impl<R: Real> ClothModel<R> {
     pub fn air_factors(&self, points: &Range<u32>) -> &[AirFactors] {
         let at = |point: u32| (point - self.points().start) as usize;
         if self.air.is_empty() { &[] } else { &self.air[at(points.start)..at(points.end)] }
+    }
+
+    /// The inverse of the mass that the force of a field accelerates at a row, given that of the point: in 1/kg, or in m²/kg
+    /// where the mass is per area, so that the motion of cloth in a field does not depend on its mesh.
+    pub fn inverse_field_mass(&self, row: u32, inverse_mass: f64) -> f64 {
+        if !self.is_mass_per_area || inverse_mass == 0.0 {
+            return inverse_mass;
+        }
+        let factor = self.mass_map.get((row - self.points().start) as usize).copied().unwrap_or(1.0);
+        1.0 / (self.point_mass * factor)
     }
 
     /// Uses only the first `points` rows: those of living particles.

@@ -71,20 +71,23 @@ fn each_field_changes_the_velocity_as_its_law_says() {
 
 #[test]
 fn newtons_attraction_falls_with_the_power_of_the_distance_and_stays_finite() {
-    let at = |distance: f64, attenuation: f64| {
+    let within = |distance: f64, attenuation: f64, min_distance: f64| {
         let mut solver = points(&[Vec3::z() * distance], Vec3::zeros(), 2.0);
         let reach = Reach { attenuation, ..Reach::everywhere() };
-        let kind = FieldKind::Newton { magnitude: 6.0, min_distance: 0.5 };
+        let kind = FieldKind::Newton { magnitude: 6.0, min_distance };
         let report = solver.step(&input(kind, reach, 1, false), &mut ());
         assert!(report.finite);
         let mut out = Vec::new();
         solver.velocities(POINTS, 1.0, &mut out);
         -f64::from(out[0][2]) / COUNT_PERIOD
     };
+    let at = |distance: f64, attenuation: f64| within(distance, attenuation, 0.5);
     assert!((at(2.0, 2.0) - 1.5).abs() < 1e-5);
     assert!((at(2.0, 1.0) - 3.0).abs() < 1e-5);
-    assert!((at(0.1, 2.0) - 24.0).abs() < 1e-4, "no stronger than at the smallest distance");
-    assert_eq!(at(0.0, 2.0), 0.0, "none at the centre, which has no direction");
+    assert_eq!(at(0.1, 2.0), 0.0, "none within the smallest distance");
+    assert!((within(0.1, 2.0, 0.0) - 600.0).abs() < 1e-2);
+    assert!((within(1e-9, 2.0, 0.0) - 6e6).abs() < 10.0, "no stronger than at a thousandth of a unit");
+    assert_eq!(within(0.0, 2.0, 0.0), 0.0, "none at the centre, which has no direction");
 }
 
 #[test]

@@ -51,7 +51,7 @@ pub mod field {
         /// Attributes shared by all fields: magnitude, range and volume.
         FIELD = "field", inherits Some(&DYN_BASE), hides [];
         "Field" {
-            /// Strength of the field.
+            /// Strength of the field: a force per point; in the physical model, of cloth per unit of area.
             MAGNITUDE: f64 = float("magnitude", "mag", 1.0).solved("nucleus_core::fields::reach");
             /// Falloff with distance; 0 is none.
             ATTENUATION: f64 = float("attenuation", "att", 0.0).solved("nucleus_core::fields::reach");
@@ -241,11 +241,11 @@ pub mod volume_axis_field {
         /// A field of flow in and around a volume.
         VOLUME_AXIS_FIELD = "volumeAxisField", inherits Some(&FIELD), hides [];
         "Field" {
-            /// Strongest at the edge of the volume instead of its centre.
+            /// Strongest at the edge of the volume, or at the largest distance, instead of the centre or the axis.
             INVERT_ATTENUATION: bool = toggle("invertAttenuation", "ia", false).solved("nucleus_graph::compile::fields");
-            /// Speed away from the centre.
+            /// Speed away from the centre of a cube or a sphere, and without a volume.
             AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0).solved("nucleus_core::fields::volume_axis");
-            /// Speed away from the axis.
+            /// Speed away from the axis of a cylinder, a cone or a torus, and without a volume.
             AWAY_FROM_AXIS: f64 = float("awayFromAxis", "afa", 1.0).solved("nucleus_core::fields::volume_axis");
             /// Speed along the axis.
             ALONG_AXIS: f64 = float("alongAxis", "alx", 0.0).solved("nucleus_core::fields::volume_axis");
@@ -281,7 +281,7 @@ pub mod newton_field {
         /// A field of gravitational attraction between masses.
         NEWTON_FIELD = "newtonField", inherits Some(&FIELD), hides [];
         "Field" {
-            /// Minimum distance at which it acts.
+            /// Distance from the field within which it does not act.
             MIN_DISTANCE: f64 = float("minDistance", "min", 0.0).solved("nucleus_core::fields::newton");
             /// Masses of the owner's points.
             OWNER_MASS_DATA: Vec<f64> = floats("ownerMassData", "omd").elsewhere("fields stand for themselves: none comes from the points of another object");

@@ -3,8 +3,6 @@
 //! A field acts on the objects that it is connected to. Lengths, speeds and accelerations of fields are in scene units, as
 //! in Maya's classic dynamics; forces are kilograms times scene units per second squared.
 
-use std::collections::BTreeSet;
-
 use nalgebra::{Matrix3, Vector3};
 use nucleus_core::{ClothId, Field, FieldKind, Noise, Reach, Volume, VolumeAxis, VolumeShape};
 
@@ -13,9 +11,7 @@ use crate::attributes::{
     Choice, Key, NodeType, air_field, drag_field, field, gravity_field, newton_field, particle, radial_field,
     turbulence_field, uniform_field, volume_axis_field, vortex_field,
 };
-use crate::diagnostic::Findings;
 use crate::graph::{EvalContext, NodeId};
-use crate::scene::document::Scene;
 
 use super::compiler::Compiler;
 use super::force_fields::ramp_at;
@@ -41,18 +37,6 @@ impl Compiler<'_> {
             }
         }
         fields
-    }
-}
-
-/// Warns of fields that are connected to no object.
-pub(super) fn warn_of_idle_fields(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) {
-    let graph = &scene.graph;
-    for (id, node) in graph.of_type(&field::FIELD).filter(|(id, _)| !broken.contains(id)) {
-        if graph.targets(id, &field::OUTPUT_FORCE).next().is_none() {
-            let message = format!("`{}` acts on nothing", node.name());
-            let warning = findings.warning(&scene.source.place(node.name()), message);
-            warning.help("name the objects it acts on: `target: \"cloth1\"`");
-        }
     }
 }
 
@@ -170,9 +154,12 @@ impl FieldNode<'_> {
         // Detail is a second octave of the noise.
         let detail = self.number(&volume_axis_field::DETAIL_TURBULENCE);
         let time = self.number(&volume_axis_field::TURBULENCE_SPEED) * self.to.frame() / 24.0;
+        let shape = self.volume(metre).map(|volume| volume.shape);
+        let has_center = matches!(shape, None | Some(VolumeShape::Cube | VolumeShape::Sphere));
+        let has_axis = !matches!(shape, Some(VolumeShape::Cube | VolumeShape::Sphere));
         VolumeAxis {
-            from_center: force(&volume_axis_field::AWAY_FROM_CENTER),
-            from_axis: force(&volume_axis_field::AWAY_FROM_AXIS),
+            from_center: if has_center { force(&volume_axis_field::AWAY_FROM_CENTER) } else { 0.0 },
+            from_axis: if has_axis { force(&volume_axis_field::AWAY_FROM_AXIS) } else { 0.0 },
             along_axis: force(&volume_axis_field::ALONG_AXIS),
             around_axis: force(&volume_axis_field::AROUND_AXIS),
             directional: self.direction(&volume_axis_field::DIRECTION)
@@ -201,11 +188,13 @@ impl FieldNode<'_> {
         let attenuation = self.number(&field::ATTENUATION).max(0.0);
         let is_axis = node_type.is_a(&volume_axis_field::VOLUME_AXIS_FIELD);
         // An inverted field is strongest at its largest distance: its falloff is a part of the curve.
-        let is_inverted = is_axis && bounded && self.to.get(self.id, &volume_axis_field::INVERT_ATTENUATION);
+        let volume = self.volume(metre);
+        let ends = bounded || is_axis && volume.is_some();
+        let is_inverted = is_axis && ends && self.to.get(self.id, &volume_axis_field::INVERT_ATTENUATION);
         let at = |k: usize| {
             let share = k as f64 / (Reach::SAMPLES - 1) as f64;
             let faded = if is_inverted { share.powf(attenuation) } else { 1.0 - fading * share };
-            if curve.is_empty() { faded } else { faded * ramp_at(&curve, share) }
+            if curve.is_empty() || !bounded { faded } else { faded * ramp_at(&curve, share) }
         };
         Reach {
             center: self.placement.offset * metre,
@@ -213,7 +202,8 @@ impl FieldNode<'_> {
             attenuation: if is_inverted { 0.0 } else { attenuation },
             max_distance: if bounded { distance } else { f64::INFINITY },
             falloff: std::array::from_fn(at),
-            volume: self.volume(metre),
+            volume,
+            falls_off_in_volume: is_axis,
         }
     }
 

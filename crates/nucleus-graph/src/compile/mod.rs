@@ -9,7 +9,8 @@
 //! | bending, yielding, pressure, resistances that count  | `soft_body.rs`                     |
 //! | attraction to the input mesh, the shape at rest      | `input_mesh.rs`                    |
 //! | fields that objects exert                            | `force_fields.rs`                  |
-//! | settings that another setting switches off           | `contradictions.rs`                |
+//! | settings that another setting switches off           | `contradictions.rs`, `dependencies.rs` |
+//! | nodes that nothing connects                          | `idle.rs`                          |
 //! | stretch that a budget leaves, `autoEvaluations`      | [`budget`]                         |
 //! | particles                                            | `particles.rs`                     |
 //! | the directions of woven cloth                        | `weave.rs`                         |
@@ -42,12 +43,14 @@ mod camera;
 mod compiler;
 mod constraints;
 mod contradictions;
+mod dependencies;
 mod emission;
 mod fields;
 mod fill;
 mod force_fields;
 mod frame;
 mod geometry;
+mod idle;
 mod initial_state;
 mod input_mesh;
 mod liquids;
@@ -162,7 +165,7 @@ fn compile_nuclei(
         let compiled = Compiler::new(scene, nucleus, broken, geometry, previous, findings).compile();
         all.push(compiled);
     }
-    fields::warn_of_idle_fields(scene, broken, findings);
+    idle::warn_of_idle_nodes(scene, broken, findings);
     if all.iter().any(|compiled| !compiled.objects.is_empty()) {
         all.retain(|compiled| !compiled.objects.is_empty());
     } else {

@@ -47,6 +47,11 @@ impl Compiler<'_> {
         if !self.objects.is_empty() {
             units::check_time_input(self.scene, self.program.node, self.findings);
             self.warn_of_bounce(self.program.node, &nucleus::PLANE_BOUNCE);
+            let emitters = self.program.emitters.iter().map(|emitter| emitter.node);
+            let fields = self.program.fields.iter().map(|field| field.node);
+            let nodes: Vec<NodeId> =
+                std::iter::once(self.program.node).chain(emitters).chain(fields).collect();
+            nodes.into_iter().for_each(|node| self.warn_of_contradictions(node));
         }
         CompiledNucleus { program: self.program, objects: self.objects, mass: self.mass }
     }

@@ -199,6 +199,7 @@ impl EvaluationInterval<'_> {
                 edges: false,
             },
             point_field: self.point_field(node, radius),
+            wind_field: self.wind_field(node),
             liquid,
             conserve: number(&particle::CONSERVE),
             rotation_friction: number(&n_particle::ROTATION_FRICTION),

@@ -106,7 +106,11 @@ impl Node {
         match self.setting(key) {
             Some(setting) => setting.is_ever_nonzero(),
             None => {
-                !matches!(self.row(key).default, Some(Value::Float(0.0) | Value::Int(0) | Value::Bool(false)))
+                let is_zero = |default: &Value| match default {
+                    Value::Vector(parts) => *parts == [0.0; 3],
+                    other => matches!(other, Value::Float(0.0) | Value::Int(0) | Value::Bool(false)),
+                };
+                !self.row(key).default.as_ref().is_some_and(is_zero)
             }
         }
     }

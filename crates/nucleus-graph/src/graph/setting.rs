@@ -90,6 +90,7 @@ impl Setting {
         match self {
             Self::Fixed(Value::Float(_) | Value::Int(_)) | Self::Keyed(_) => self.largest() != 0.0,
             Self::Fixed(Value::Bool(on)) => *on,
+            Self::Fixed(Value::Vector(parts)) => *parts != [0.0; 3],
             Self::Fixed(_) => true,
             Self::Parts(channels) => channels.iter().any(|channel| match channel {
                 Channel::Fixed(x) => *x != 0.0,

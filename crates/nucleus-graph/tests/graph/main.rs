@@ -2,6 +2,7 @@
 
 mod animation;
 mod constraints;
+mod effects;
 mod hostile;
 mod independence;
 mod maps;

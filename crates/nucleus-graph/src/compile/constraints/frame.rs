@@ -14,7 +14,7 @@ use crate::animation::Affine;
 use crate::attributes::dynamic_constraint as con;
 use crate::compile::force_fields::FIELD_ACCELERATION;
 use crate::compile::program::{EvaluationInterval, NucleusProgram};
-use crate::graph::EvalContext;
+use crate::graph::{EvalContext, NodeId};
 
 use super::forming::Forming;
 use super::kinds::Values;
@@ -52,6 +52,11 @@ impl ConstraintSource {
 }
 
 impl NucleusProgram {
+    /// The constraints with links, in the order of [`FrameInput::constraints`](nucleus_core::FrameInput).
+    pub(crate) fn linking_constraints(&self) -> impl Iterator<Item = NodeId> + '_ {
+        self.constraints.iter().filter(|source| source.part.is_some()).map(|source| source.node)
+    }
+
     /// Whether a restored state of constraints fits.
     pub(crate) fn accepts_constraints(&self, formed: &[bool]) -> bool {
         formed.is_empty() || formed.len() == self.constraints.len()

@@ -1,0 +1,69 @@
+//! Nodes that act on nothing because nothing connects them: a warning says which.
+
+use std::collections::BTreeSet;
+
+use crate::attributes::{
+    Key, NodeType, air_field, dynamic_constraint, field, gravity_field, n_particle, n_rigid, particle,
+    point_emitter, uniform_field, vortex_field,
+};
+use crate::diagnostic::Findings;
+use crate::graph::{Graph, NodeId, Plug};
+use crate::scene::document::Scene;
+
+/// Warns of fields, emitters and constraints that act on nothing.
+pub(super) fn warn_of_idle_nodes(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) {
+    let graph = &scene.graph;
+    let mut warn = |id: NodeId, message: String, help: &str| {
+        if !broken.contains(&id) {
+            findings.warning(&scene.source.place(graph.node(id).name()), message).help(help);
+        }
+    };
+    for (id, node) in graph.of_type(&field::FIELD) {
+        let mut targets = graph.targets(id, &field::OUTPUT_FORCE).peekable();
+        let name = node.name();
+        if targets.peek().is_none() {
+            let help = "name the objects it acts on: `target: \"cloth1\"`";
+            warn(id, format!("`{name}` acts on nothing"), help);
+        } else if targets.all(|to| graph.node(to.node).node_type().is_a(&n_rigid::N_RIGID)) {
+            let help = "colliders follow their meshes; name cloth or particles";
+            warn(id, format!("`{name}` acts on colliders only, which no force moves"), help);
+        } else if let Some(key) = direction_of(node.node_type()).filter(|key| !graph.is_ever_nonzero(id, key))
+        {
+            let help = format!("give it one: `{}: (0, 1, 0)`", key.row.name);
+            warn(id, format!("`{name}` acts on nothing: its `{}` is zero", key.row.name), &help);
+        }
+    }
+    for (id, node) in graph.of_type(&point_emitter::POINT_EMITTER) {
+        if !graph.targets(id, &point_emitter::OUTPUT).any(|to| is_particle_input(graph, to)) {
+            let help = "name the particles: `target: \"nParticle1\"`";
+            warn(id, format!("`{}` emits into no particles", node.name()), help);
+        }
+    }
+    for (id, node) in graph.of_type(&dynamic_constraint::DYNAMIC_CONSTRAINT) {
+        let is_listed = !node.get(&dynamic_constraint::COMPONENTS).is_empty();
+        let has_parts = !graph.elements(id, &dynamic_constraint::COMPONENT_IDS).is_empty();
+        if !is_listed && !has_parts {
+            let help = "name the parts that it joins: `components: [\"cloth1.border\"]`";
+            warn(id, format!("`{}` constrains nothing: it has no components", node.name()), help);
+        } else if !is_listed && graph.targets(id, &dynamic_constraint::EVAL_CURRENT).next().is_none() {
+            let help = "connect its `evalStart[0]` and `evalCurrent[0]` to `inputStart` and `inputCurrent` of a nucleus";
+            warn(id, format!("`{}` constrains nothing: it has no nucleus", node.name()), help);
+        }
+    }
+}
+
+/// The attribute without which a field has no direction.
+fn direction_of(node_type: &'static NodeType) -> Option<&'static Key<[f64; 3]>> {
+    let all = [
+        (&gravity_field::GRAVITY_FIELD, &gravity_field::DIRECTION),
+        (&uniform_field::UNIFORM_FIELD, &uniform_field::DIRECTION),
+        (&air_field::AIR_FIELD, &air_field::DIRECTION),
+        (&vortex_field::VORTEX_FIELD, &vortex_field::AXIS),
+    ];
+    all.into_iter().find(|(of, _)| node_type.is_a(of)).map(|(_, key)| key)
+}
+
+fn is_particle_input(graph: &Graph, to: Plug) -> bool {
+    graph.node(to.node).node_type().is_a(&n_particle::N_PARTICLE)
+        && to.attribute.name == particle::NEW_PARTICLES.row.name
+}
