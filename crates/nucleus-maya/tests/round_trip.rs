@@ -278,3 +278,13 @@ fn meshes_of_every_format_are_written_with_their_points_and_motion_is_reported()
     std::fs::remove_file(folder.path().join("still.ply")).unwrap();
     assert!(maya_ascii(&scene, "out").unwrap_err().contains("still.ply"));
 }
+
+#[test]
+fn constraints_by_meaning_are_carried_over_beside_others() {
+    let ron = "Scene(time: (start: 1, end: 10, fps: 24), nodes: {\"n\": nucleus(), \"p\": polyPlane(), \"c\": nCloth(inputMesh: \"p\"),
+        \"a\": dynamicConstraint(components: [\"c.corners\", \"c.e[border]\"]), \"b\": dynamicConstraint(components: [\"c\"])})";
+    let (scene, _) = read_scene_text(ron, Path::new("out.ron")).unwrap();
+    let (text, _) = maya_ascii(&scene, "out").unwrap();
+    let again = imported(&text).scene;
+    assert!(again == scene, "{}", write_scene(&again));
+}

@@ -241,6 +241,14 @@ impl Graph {
             let id = Plug::element(constraint, &dynamic_constraint::COMPONENT_IDS, c);
             self.connect(Plug::new(member, &n_component::OUT_COMPONENT), id)?;
         }
+        self.join_constraint(constraint, nucleus)
+    }
+
+    /// Connects the clock to a constraint, and the constraint to the first free index of a nucleus.
+    ///
+    /// # Errors
+    /// When the constraint is connected already.
+    pub fn join_constraint(&mut self, constraint: NodeId, nucleus: NodeId) -> Result<(), GraphError> {
         self.drive_by_time(constraint, &dynamic_constraint::CURRENT_TIME, Some(nucleus))?;
         let k = self.free_index(nucleus, [&nucleus::INPUT_START, &nucleus::INPUT_CURRENT]);
         let start = Plug::element(constraint, &dynamic_constraint::EVAL_START, 0);

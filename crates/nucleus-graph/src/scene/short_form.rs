@@ -82,6 +82,11 @@ impl ShortForm {
         matches!(self.creations.get(&id), Some(Creation::Object { .. }))
     }
 
+    /// Whether a node has the connections of a creation command, but is not in short form.
+    pub(super) fn is_connected_explicitly(&self, graph: &Graph, id: NodeId) -> bool {
+        !self.creations.contains_key(&id) && graph.creation(id).is_some()
+    }
+
     /// The node that an attribute names in short form.
     pub(super) fn named(&self, id: NodeId, attribute: &str) -> Option<NodeId> {
         match (self.creations.get(&id)?, attribute) {

@@ -3,7 +3,9 @@
 use std::fmt::Write;
 
 use crate::animation::{Curve, Infinity, Tangent};
-use crate::attributes::{Attribute, Choice, ColorPoint, Kind, RampPoint, Value, n_particle};
+use crate::attributes::{
+    Attribute, Choice, ColorPoint, Kind, RampPoint, Value, dynamic_constraint, n_particle,
+};
 use crate::graph::{Channel, Graph, Node, NodeId, Setting};
 
 use super::comments::Comments;
@@ -108,6 +110,10 @@ fn fields_of(graph: &Graph, id: NodeId, row: &'static Attribute, short: &ShortFo
     };
     if let Some(target) = target {
         return vec![format!("{}: {}", row.name, quoted(graph.node(target).name()))];
+    }
+    // Reading a list of components makes their connections, which here are written one by one.
+    if row.name == dynamic_constraint::COMPONENTS.row.name && short.is_connected_explicitly(graph, id) {
+        return Vec::new();
     }
     let is_particles = node.node_type().is_a(&n_particle::N_PARTICLE);
     if row.name == "nucleus"

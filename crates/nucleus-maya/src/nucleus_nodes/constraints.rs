@@ -14,6 +14,7 @@ use super::kept::nucleus_of;
 /// Maya's numbers of `componentType`.
 const POINT: u32 = 2;
 const EDGE: u32 = 3;
+const FACE: u32 = 4;
 const WHOLE: u32 = 6;
 /// Maya's numbers of `elements`.
 const LISTED: u32 = 0;
@@ -32,10 +33,41 @@ struct Part {
     is_plain: bool,
 }
 
+/// How a constraint is connected.
+enum Form {
+    /// By the creation command, from its components.
+    Short(Vec<Component>),
+    /// By component nodes with values of their own.
+    Explicit,
+}
+
 impl Importer<'_> {
-    /// Connects a constraint to its nucleus and to its components.
-    pub(super) fn connect_constraint(&mut self, from: NodeId, to: OwnId) {
-        let Some(nucleus) = nucleus_of(self.scene, from).and_then(|id| self.own_of(id)) else { return };
+    /// Connects constraints to their components and to their nuclei.
+    ///
+    /// Creation commands take the first free name and index. Component nodes are therefore added before them, as a
+    /// scene is read, and the other constraints are connected to their nuclei after them.
+    pub(super) fn connect_constraints(&mut self, all: &[(NodeId, OwnId)]) {
+        let mut forms = Vec::new();
+        for &(from, to) in all {
+            let Some(nucleus) = nucleus_of(self.scene, from).and_then(|id| self.own_of(id)) else { continue };
+            forms.push((to, nucleus, self.form_of(from, to)));
+        }
+        for (to, nucleus, form) in &forms {
+            if let Form::Short(components) = form {
+                self.set_components(*to, components);
+                let creation = Creation::Constraint { components: components.clone(), nucleus: *nucleus };
+                self.create(*to, &creation);
+            }
+        }
+        for (to, nucleus, form) in &forms {
+            if let (Form::Explicit, Err(error)) = (form, self.graph.join_constraint(*to, *nucleus)) {
+                self.omissions.add(self.graph.node(*to).name(), Cause::Connection(error.to_string()));
+            }
+        }
+    }
+
+    /// How a constraint is connected. Adds its component nodes if no creation command makes them.
+    fn form_of(&mut self, from: NodeId, to: OwnId) -> Form {
         let parts = self.parts_of(from);
         if !self.is_own {
             let number = type_of(self.scene, from, &parts);
@@ -44,22 +76,17 @@ impl Importer<'_> {
                 self.set(to, row, Setting::Fixed(Value::Choice(Choice(number))));
             }
         }
-        let repeated = (1..parts.len()).any(|k| parts[..k].iter().any(|other| other.name == parts[k].name));
+        let key = |part: &Part| (part.object, part.kind);
+        let repeated = (1..parts.len()).any(|k| parts[..k].iter().any(|other| key(other) == key(&parts[k])));
         let listed = self.scene.string(from, &[dynamic_constraint::COMPONENTS.row.name]).is_some();
         let is_short = if self.is_own { listed } else { !repeated && !parts.is_empty() };
         if is_short && parts.iter().all(|part| part.is_plain) {
-            let components = self.listed(from, &parts);
-            self.set_components(to, &components);
-            let creation = Creation::Constraint { components, nucleus };
-            if let Err(error) = self.graph.create(to, &creation) {
-                self.omissions.add(self.graph.node(to).name(), Cause::Connection(error.to_string()));
-            }
-            return;
+            return Form::Short(self.listed(from, &parts));
         }
         for part in parts {
             self.add_part(to, &part);
         }
-        self.connect_to_nucleus(from);
+        Form::Explicit
     }
 
     fn set_components(&mut self, to: OwnId, components: &[Component]) {
@@ -116,12 +143,18 @@ impl Importer<'_> {
                 "componentIndices",
                 "cid",
                 "componentGroupId",
+                n_component::SELECT.row.name,
             ];
             let says_more = scene.assigned(node, ANY).any(|set| {
                 let row = n_component::N_COMPONENT.attribute(set.segment.name);
                 !set.values.is_empty() && row.is_some() && !said.contains(&set.segment.name)
             });
-            let is_plain = matches!((kind, elements), (POINT, 0 | 2) | (WHOLE, _)) && !says_more;
+            // The list of a Nucleus scene says what its component nodes hold.
+            let is_known = match kind {
+                POINT | EDGE | FACE => elements != LISTED || !list.is_empty() || self.is_own,
+                kind => kind == WHOLE,
+            };
+            let is_plain = is_known && !says_more;
             let name = self.graph.node(own).name().to_owned();
             parts.push(Part { node, index, object: own, name, kind, elements, list, is_plain });
         }
@@ -165,15 +198,22 @@ fn texts(list: &str) -> Vec<&str> {
     texts
 }
 
-/// The components of a plain part: the object, all its points, or runs of points.
+/// The components of a plain part: the object, all its elements of a kind, those on borders, or runs of them.
 fn components(part: &Part) -> Vec<Component> {
     let of = |selection| Component { object: part.name.clone(), selection };
+    let kind = match part.kind {
+        EDGE => ElementKind::Edge,
+        FACE => ElementKind::Face,
+        _ => ElementKind::Point,
+    };
     match (part.kind, part.elements) {
         (WHOLE, _) => vec![of(Selection::Object)],
         (_, LISTED) => {
-            runs(&part.list).into_iter().map(|(first, last)| of(Selection::points(first, last))).collect()
+            let run = |(first, last)| of(Selection::Elements(kind, Which::Range(first, last)));
+            runs(&part.list).into_iter().map(run).collect()
         }
-        _ => vec![of(Selection::Elements(ElementKind::Point, Which::All))],
+        (_, BORDERS) => vec![of(Selection::Elements(kind, Which::Border))],
+        _ => vec![of(Selection::Elements(kind, Which::All))],
     }
 }
 

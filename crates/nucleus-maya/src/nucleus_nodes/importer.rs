@@ -169,7 +169,7 @@ impl<'s> Importer<'s> {
         of(self, &n_base::N_BASE).into_iter().for_each(|(from, to)| self.connect_object(from, to));
         of(self, &n_base::N_BASE).into_iter().for_each(|(_, to)| self.drop_other_lengths(to));
         let constraints = of(self, &dynamic_constraint::DYNAMIC_CONSTRAINT);
-        constraints.into_iter().for_each(|(from, to)| self.connect_constraint(from, to));
+        self.connect_constraints(&constraints);
         of(self, &dyn_base::DYN_BASE).into_iter().for_each(|(from, to)| self.connect_effect(from, to));
         self.connect_the_rest();
         let objects = of(self, &n_base::N_BASE);

@@ -1,6 +1,6 @@
 //! Connections: those of Maya's creation commands, made again, and all others between nodes that are carried over.
 
-use nucleus_graph::attributes::{self, n_base, nucleus, transform};
+use nucleus_graph::attributes::{n_base, transform};
 use nucleus_graph::graph::{Creation, GraphError, NodeId as OwnId, Plug, may_be_from_creation};
 
 use crate::omissions::Cause;
@@ -15,7 +15,12 @@ impl Importer<'_> {
         let Some(nucleus) = nucleus_of(self.scene, from).and_then(|id| self.own_of(id)) else { return };
         let source = self.scene.source(from, &["imsh", "inputMesh"], None);
         let mesh = source.and_then(|wire| self.own_of(wire.from.node));
-        if let Err(error) = self.graph.create(to, &Creation::Object { mesh, nucleus }) {
+        self.create(to, &Creation::Object { mesh, nucleus });
+    }
+
+    /// Makes the connections of a creation command.
+    pub(super) fn create(&mut self, to: OwnId, creation: &Creation) {
+        if let Err(error) = self.graph.create(to, creation) {
             self.omissions.add(self.graph.node(to).name(), Cause::Connection(error.to_string()));
         }
     }
@@ -29,27 +34,7 @@ impl Importer<'_> {
         let Some(wire) = leaving.min_by_key(index) else { return };
         let Some(target) = self.own_of(wire.to.node) else { return };
         // An emitter is driven by time, a field is not.
-        if let Err(error) = self.graph.create(to, &Creation::Effect { target }) {
-            self.omissions.add(self.graph.node(to).name(), Cause::Connection(error.to_string()));
-        }
-    }
-
-    /// Connects a constraint with component nodes of its own to the clock and to its nucleus.
-    pub(super) fn connect_to_nucleus(&mut self, from: NodeId) {
-        let wires: Vec<Wire> = self.scene.leaving(from).chain(self.scene.arriving(from)).collect();
-        for wire in wires {
-            if let (Some(out), Some(input)) = (self.plug(wire.from), self.plug(wire.to))
-                && !matches!(input.attribute.name, "componentIds")
-            {
-                self.join(out, input);
-            }
-        }
-        if let Some(nucleus) = nucleus_of(self.scene, from).and_then(|id| self.own_of(id))
-            && self.graph.source(nucleus, &nucleus::CURRENT_TIME).is_none()
-        {
-            let clock = Plug::new(self.graph.clock(), &attributes::time::OUT_TIME);
-            self.join(clock, Plug::new(nucleus, &nucleus::CURRENT_TIME));
-        }
+        self.create(to, &Creation::Effect { target });
     }
 
     /// Makes all other connections between nodes that are carried over.

@@ -1,0 +1,122 @@
+//! Parts of Maya scenes, each written in its test, become the nodes and values that Maya computes.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use nucleus_graph::scene::{read_scene_text, write_scene};
+use nucleus_maya::ascii::SourceText;
+use nucleus_maya::{ImportOptions, Imported, import_text};
+
+/// An imported scene, and the text of its mesh files.
+struct Read {
+    imported: Imported,
+    files: BTreeMap<String, String>,
+}
+
+fn read(body: &str) -> Read {
+    read_at(Path::new("a.ma"), body)
+}
+
+/// Imports a scene that would lie at a path.
+fn read_at(path: &Path, body: &str) -> Read {
+    let mut files = BTreeMap::new();
+    let mut options = ImportOptions::new("meshes", |name, text| {
+        files.insert(name.to_owned(), text);
+        Ok(())
+    });
+    let text = format!("//Maya ASCII 2022 scene\n{body}");
+    let text = SourceText::from_bytes(path, text.into_bytes()).unwrap();
+    let imported = import_text(text, &path.with_extension("ron"), &mut options).unwrap();
+    drop(options);
+    Read { imported, files }
+}
+
+impl Read {
+    /// The text of the scene file.
+    fn text(&self) -> String {
+        write_scene(&self.imported.scene)
+    }
+
+    /// Whether an omission names something and gives a reason with a word.
+    fn omits(&self, what: &str, word: &str) -> bool {
+        self.imported.omissions.iter().any(|(own, cause)| own.contains(what) && cause.reason().contains(word))
+    }
+
+    /// Where a point of a node is at a frame.
+    fn placed(&self, name: &str, point: [f64; 3], frame: f64) -> [f64; 3] {
+        let graph = &self.imported.scene.graph;
+        let id = graph.find(name).unwrap_or_else(|| panic!("no `{name}` in\n{}", self.text()));
+        graph.placement(id, frame).point(point.into()).into()
+    }
+
+    /// Where the origin of a node is at a frame.
+    fn origin(&self, name: &str, frame: f64) -> [f64; 3] {
+        self.placed(name, [0.0; 3], frame)
+    }
+}
+
+/// The written scene reads back to the same scene, without errors.
+fn assert_round_trip(read: &Read) {
+    let text = read.text();
+    let (again, _) = read_scene_text(&text, Path::new("a.ron")).unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+    assert!(again == read.imported.scene, "{text}");
+}
+
+fn near(found: [f64; 3], expected: [f64; 3]) {
+    let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9);
+    assert!(is_near, "{found:?} is not {expected:?}");
+}
+
+/// A mesh that moves, so that its transform is carried over.
+fn mesh(name: &str) -> String {
+    format!(
+        "createNode transform -n \"{name}\";\ncreateNode mesh -n \"{name}Shape\" -p \"{name}\";\n\
+         createNode polyPlane -n \"{name}Plane\";\nconnectAttr \"{name}Plane.out\" \"{name}Shape.i\";\n"
+    )
+}
+
+/// A cloth with constraints, each with one component: type, elements, and further values of its component node.
+fn constrained_cloth(constraints: &[&str]) -> String {
+    let mut text = mesh("sheet");
+    text += "createNode nucleus -n \"n\";\ncreateNode transform -n \"c\";\ncreateNode nCloth -n \"cShape\" -p \"c\";\n\
+             connectAttr \"sheetShape.w[0]\" \"cShape.imsh\";\nconnectAttr \"cShape.cust\" \"n.niao[0]\";\n\
+             connectAttr \"cShape.stst\" \"n.nias[0]\";\n";
+    for (k, component) in constraints.iter().enumerate() {
+        text += &format!(
+            "createNode transform -n \"k{k}\";\ncreateNode dynamicConstraint -n \"k{k}Shape\" -p \"k{k}\";\n\
+             setAttr \".crr\" 0;\ncreateNode nComponent -n \"part{k}\";\n{component}\n\
+             connectAttr \"k{k}Shape.evs[0]\" \"n.is[{k}]\";\nconnectAttr \"k{k}Shape.evc[0]\" \"n.ic[{k}]\";\n\
+             connectAttr \"cShape.nuid\" \"part{k}.obid\";\nconnectAttr \"part{k}.ocp\" \"k{k}Shape.cid[0]\";\n"
+        );
+    }
+    text
+}
+
+const POINT: &str = "setAttr \".ct\" 2; setAttr \".el\" 0; setAttr -s 1 \".ci[0]\" 5;";
+const EDGES: &str = "setAttr \".ct\" 3; setAttr \".el\" 0; setAttr -s 2 \".ci[0:1]\" 1 2;";
+const BORDER: &str = "setAttr \".ct\" 3; setAttr \".el\" 1;";
+const FACES: &str = "setAttr \".ct\" 4; setAttr \".el\" 0; setAttr -s 2 \".ci[0:1]\" 0 1;";
+const WHOLE: &str = "setAttr \".ct\" 6; setAttr \".el\" 2;";
+const WEAK: &str = "setAttr \".ct\" 2; setAttr \".el\" 0; setAttr -s 1 \".ci[0]\" 7; setAttr \".stn\" 0.5;";
+
+#[test]
+fn components_of_every_kind_are_listed_in_the_short_form() {
+    let read = read(&constrained_cloth(&[EDGES, POINT, BORDER, FACES, WHOLE]));
+    let text = read.text();
+    for listed in ["[\"c.e[1:2]\"]", "[\"c.vtx[5]\"]", "[\"c.e[border]\"]", "[\"c.f[0:1]\"]", "[\"c\"]"] {
+        assert!(text.contains(listed), "{listed} is missing in\n{text}");
+    }
+    assert!(!text.contains("connections:"), "{text}");
+    assert_round_trip(&read);
+}
+
+#[test]
+fn a_component_node_with_values_of_its_own_stands_beside_constraints_in_short_form() {
+    for all in [[WEAK, POINT, WHOLE], [POINT, WEAK, WHOLE], [POINT, WHOLE, WEAK]] {
+        let read = read(&constrained_cloth(&all));
+        let text = read.text();
+        assert!(text.contains("strength: 0.5") && text.contains("[\"c.vtx[5]\"]"), "{text}");
+        assert!(read.imported.omissions.iter().all(|(what, _)| what == "c"), "{}", read.imported.omissions);
+        assert_round_trip(&read);
+    }
+}
