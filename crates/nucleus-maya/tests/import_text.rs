@@ -120,3 +120,39 @@ fn a_component_node_with_values_of_its_own_stands_beside_constraints_in_short_fo
         assert_round_trip(&read);
     }
 }
+
+/// A mesh whose transform is driven by a curve from 1 at frame 1 to 3 at frame 3, through a node.
+fn driven(node: &str) -> Read {
+    read(&format!(
+        "{}createNode animCurveTU -n \"curve\";\nsetAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 1 1 3 3;\n{node}",
+        mesh("m")
+    ))
+}
+
+#[test]
+fn inputs_of_utility_nodes_may_be_stored_as_a_whole() {
+    for (whole, kind) in [("i2", "float3"), ("input2", "double3")] {
+        let read = driven(&format!(
+            "createNode multiplyDivide -n \"md\";\nsetAttr \".{whole}\" -type \"{kind}\" 5 1 1;\n\
+             connectAttr \"curve.o\" \"md.i1x\";\nconnectAttr \"md.ox\" \"m.tx\";"
+        ));
+        near(read.origin("m", 2.0), [10.0, 0.0, 0.0]);
+    }
+    let read = driven(
+        "createNode clamp -n \"c\";\nsetAttr \".mx\" -type \"float3\" 9 2.5 9;\n\
+         createNode reverse -n \"r\";\nsetAttr \".i\" -type \"float3\" 0 0 4;\nconnectAttr \"curve.o\" \"c.ipg\";\n\
+         connectAttr \"c.opg\" \"m.ty\";\nconnectAttr \"r.oz\" \"m.tz\";",
+    );
+    near(read.origin("m", 2.0), [0.0, 2.0, -3.0]);
+    near(read.origin("m", 3.0), [0.0, 2.5, -3.0]);
+}
+
+#[test]
+fn outputs_of_utility_nodes_may_be_connected_as_a_whole() {
+    let read = driven(
+        "createNode multiplyDivide -n \"md\";\nsetAttr \".i1\" -type \"float3\" 1 7 1;\n\
+         setAttr \".i2\" -type \"float3\" 5 1 1;\nconnectAttr \"curve.o\" \"md.i1x\";\nconnectAttr \"md.o\" \"m.t\";",
+    );
+    near(read.origin("m", 2.0), [10.0, 7.0, 1.0]);
+    assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
+}

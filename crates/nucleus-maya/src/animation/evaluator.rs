@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::scene::{MayaScene, NodeId, PlugRef, Wire};
+use crate::scene::{MayaScene, NodeId, PlugRef, Vector3, Wire};
 
 use super::curve::MayaCurve;
 use super::names;
@@ -92,38 +92,8 @@ impl<'s> Evaluator<'s> {
             }
             "addDoubleLinear" => Some(get(&["i1", "input1"], 0.0) + get(&["i2", "input2"], 0.0)),
             "multDoubleLinear" => Some(get(&["i1", "input1"], 0.0) * get(&["i2", "input2"], 1.0)),
-            "multiplyDivide" => {
-                let part = part(last.name)?;
-                let names: [[&[&str]; 2]; 3] = [
-                    [&["i1x", "input1X"], &["i2x", "input2X"]],
-                    [&["i1y", "input1Y"], &["i2y", "input2Y"]],
-                    [&["i1z", "input1Z"], &["i2z", "input2Z"]],
-                ];
-                let [a, b] = [get(names[part][0], 0.0), get(names[part][1], 1.0)];
-                match self.scene.stored_or(node, &["op", "operation"], 1.0) as u8 {
-                    0 => Some(a),
-                    1 => Some(a * b),
-                    2 => (b != 0.0).then_some(a / b),
-                    _ => Some(libm::pow(a, b)),
-                }
-            }
-            "reverse" => {
-                let names: [&[&str]; 3] = [&["ix", "inputX"], &["iy", "inputY"], &["iz", "inputZ"]];
-                Some(1.0 - get(names[part(last.name)?], 0.0))
-            }
-            "pairBlend" => {
-                let names: [[&[&str]; 2]; 6] = [
-                    [&["itx1", "inTranslateX1"], &["itx2", "inTranslateX2"]],
-                    [&["ity1", "inTranslateY1"], &["ity2", "inTranslateY2"]],
-                    [&["itz1", "inTranslateZ1"], &["itz2", "inTranslateZ2"]],
-                    [&["irx1", "inRotateX1"], &["irx2", "inRotateX2"]],
-                    [&["iry1", "inRotateY1"], &["iry2", "inRotateY2"]],
-                    [&["irz1", "inRotateZ1"], &["irz2", "inRotateZ2"]],
-                ];
-                let is_turn = last.name.starts_with("or") || last.name.starts_with("outRotate");
-                let [a, b] = names[part(last.name)? + if is_turn { 3 } else { 0 }];
-                let weight = get(&["w", "weight"], 1.0);
-                Some(get(a, 0.0) * (1.0 - weight) + get(b, 0.0) * weight)
+            "multiplyDivide" | "reverse" | "pairBlend" | "clamp" => {
+                self.blended(node, last.name, part(last.name)?, frame)
             }
             "plusMinusAverage" if matches!(last.name, "o1" | "output1D") => {
                 let terms = self.elements(node, &["i1", "input1D"], frame);
@@ -140,15 +110,6 @@ impl<'s> Evaluator<'s> {
                 let weight = |k: usize| weights.get(k).copied().unwrap_or(1.0);
                 Some(values.iter().enumerate().map(|(k, x)| x * weight(k)).sum())
             }
-            "clamp" => {
-                let names: [[&[&str]; 3]; 3] = [
-                    [&["ipr", "inputR"], &["mnr", "minR"], &["mxr", "maxR"]],
-                    [&["ipg", "inputG"], &["mng", "minG"], &["mxg", "maxG"]],
-                    [&["ipb", "inputB"], &["mnb", "minB"], &["mxb", "maxB"]],
-                ];
-                let [x, low, high] = names[part(last.name)?].map(|names| get(names, 0.0));
-                Some(x.max(low).min(high))
-            }
             "expression" => {
                 let script = self.script(node);
                 let index = path.segments().find_map(|segment| segment.range)?.0;
@@ -164,6 +125,35 @@ impl<'s> Evaluator<'s> {
             | "dynamicConstraint" | "camera" | "mesh" | "network" | "script" => {
                 let names = [last.name];
                 self.number(node, &names, frame).or_else(|| self.of_whole(plug, frame))
+            }
+            _ => None,
+        }
+    }
+
+    /// One component of the output of a node that computes three from its inputs, each stored or connected by component or
+    /// as a whole.
+    fn blended(&self, node: NodeId, output: &str, part: usize, frame: f64) -> Option<f64> {
+        let get = |vector: Vector3, default: f64| self.vector(node, vector, [default; 3], frame)[part];
+        match self.scene.kind(node) {
+            "multiplyDivide" => {
+                let [a, b] = [get(names::FACTORS[0], 0.0), get(names::FACTORS[1], 1.0)];
+                match self.scene.stored_or(node, &["op", "operation"], 1.0) as u8 {
+                    0 => Some(a),
+                    1 => Some(a * b),
+                    2 => (b != 0.0).then_some(a / b),
+                    _ => Some(libm::pow(a, b)),
+                }
+            }
+            "reverse" => Some(1.0 - get(names::REVERSED, 0.0)),
+            "pairBlend" => {
+                let is_turn = output.starts_with("or") || output.starts_with("outRotate");
+                let [a, b] = names::BLENDED[usize::from(is_turn)];
+                let weight = self.number_or(node, &["w", "weight"], frame, 1.0);
+                Some(get(a, 0.0) * (1.0 - weight) + get(b, 0.0) * weight)
+            }
+            "clamp" => {
+                let [x, low, high] = names::CLAMPED.map(|vector| get(vector, 0.0));
+                Some(x.max(low).min(high))
             }
             _ => None,
         }
@@ -213,13 +203,7 @@ impl<'s> Evaluator<'s> {
     }
 
     /// A vector at a frame, in the units of the file.
-    pub fn vector(
-        &self,
-        id: NodeId,
-        vector: crate::scene::Vector3,
-        default: [f64; 3],
-        frame: f64,
-    ) -> [f64; 3] {
+    pub fn vector(&self, id: NodeId, vector: Vector3, default: [f64; 3], frame: f64) -> [f64; 3] {
         let stored = self.scene.stored_vector(id, vector, default);
         let whole = self.scene.source(id, vector.whole, None);
         [0, 1, 2].map(|part| {
@@ -239,6 +223,9 @@ impl<'s> Evaluator<'s> {
         let last = self.scene.path(wire.from).last().name;
         if names::is_constraint(self.scene.kind(node)) {
             return Some(self.constrained(node, frame)?[names::driven_by(last)?.0][part]);
+        }
+        if matches!(self.scene.kind(node), "multiplyDivide" | "reverse" | "pairBlend" | "clamp") {
+            return self.nested(|| self.blended(node, last, part, frame));
         }
         let (vector, default) = names::vector_of_whole(last)?;
         if !matches!(self.scene.kind(node), "transform" | "joint") {

@@ -2,60 +2,57 @@
 
 use crate::scene::{Names, Vector3};
 
+/// A vector: short and full name of the whole, and what follows them in the names of its components.
+macro_rules! vector {
+    ($short:literal, $long:literal) => {
+        vector!($short, $long, "", ["x", "y", "z"], ["X", "Y", "Z"])
+    };
+    ($short:literal, $long:literal, $number:literal) => {
+        vector!($short, $long, $number, ["x", "y", "z"], ["X", "Y", "Z"])
+    };
+    ($short:literal, $long:literal, $number:literal, [$($s:literal),+], [$($l:literal),+]) => {
+        Vector3 {
+            whole: &[concat!($short, $number), concat!($long, $number)],
+            parts: [$(&[concat!($short, $s, $number), concat!($long, $l, $number)]),+],
+        }
+    };
+}
+
 /// Translation.
-pub const TRANSLATE: Vector3 = Vector3 {
-    whole: &["t", "translate"],
-    parts: [&["tx", "translateX"], &["ty", "translateY"], &["tz", "translateZ"]],
-};
+pub const TRANSLATE: Vector3 = vector!("t", "translate");
 /// Rotation.
-pub const ROTATE: Vector3 =
-    Vector3 { whole: &["r", "rotate"], parts: [&["rx", "rotateX"], &["ry", "rotateY"], &["rz", "rotateZ"]] };
+pub const ROTATE: Vector3 = vector!("r", "rotate");
 /// Scale.
-pub const SCALE: Vector3 =
-    Vector3 { whole: &["s", "scale"], parts: [&["sx", "scaleX"], &["sy", "scaleY"], &["sz", "scaleZ"]] };
+pub const SCALE: Vector3 = vector!("s", "scale");
 /// Shear: xy, xz, yz.
-pub const SHEAR: Vector3 = Vector3 {
-    whole: &["sh", "shear"],
-    parts: [&["shxy", "shearXY"], &["shxz", "shearXZ"], &["shyz", "shearYZ"]],
-};
+pub const SHEAR: Vector3 = vector!("sh", "shear", "", ["xy", "xz", "yz"], ["XY", "XZ", "YZ"]);
 /// The pivot of rotation.
-pub const ROTATE_PIVOT: Vector3 = Vector3 {
-    whole: &["rp", "rotatePivot"],
-    parts: [&["rpx", "rotatePivotX"], &["rpy", "rotatePivotY"], &["rpz", "rotatePivotZ"]],
-};
+pub const ROTATE_PIVOT: Vector3 = vector!("rp", "rotatePivot");
 /// Its translation.
-pub const ROTATE_PIVOT_TRANSLATE: Vector3 = Vector3 {
-    whole: &["rpt", "rotatePivotTranslate"],
-    parts: [
-        &["rptx", "rotatePivotTranslateX"],
-        &["rpty", "rotatePivotTranslateY"],
-        &["rptz", "rotatePivotTranslateZ"],
-    ],
-};
+pub const ROTATE_PIVOT_TRANSLATE: Vector3 = vector!("rpt", "rotatePivotTranslate");
 /// The pivot of scale.
-pub const SCALE_PIVOT: Vector3 = Vector3 {
-    whole: &["sp", "scalePivot"],
-    parts: [&["spx", "scalePivotX"], &["spy", "scalePivotY"], &["spz", "scalePivotZ"]],
-};
+pub const SCALE_PIVOT: Vector3 = vector!("sp", "scalePivot");
 /// Its translation.
-pub const SCALE_PIVOT_TRANSLATE: Vector3 = Vector3 {
-    whole: &["spt", "scalePivotTranslate"],
-    parts: [
-        &["sptx", "scalePivotTranslateX"],
-        &["spty", "scalePivotTranslateY"],
-        &["sptz", "scalePivotTranslateZ"],
-    ],
-};
+pub const SCALE_PIVOT_TRANSLATE: Vector3 = vector!("spt", "scalePivotTranslate");
 /// The orientation of the rotation axes.
-pub const ROTATE_AXIS: Vector3 = Vector3 {
-    whole: &["ra", "rotateAxis"],
-    parts: [&["rax", "rotateAxisX"], &["ray", "rotateAxisY"], &["raz", "rotateAxisZ"]],
-};
+pub const ROTATE_AXIS: Vector3 = vector!("ra", "rotateAxis");
 /// The orientation of a joint.
-pub const JOINT_ORIENT: Vector3 = Vector3 {
-    whole: &["jo", "jointOrient"],
-    parts: [&["jox", "jointOrientX"], &["joy", "jointOrientY"], &["joz", "jointOrientZ"]],
-};
+pub const JOINT_ORIENT: Vector3 = vector!("jo", "jointOrient");
+/// The inputs of a `multiplyDivide`.
+pub(crate) const FACTORS: [Vector3; 2] = [vector!("i1", "input1"), vector!("i2", "input2")];
+/// The input of a `reverse`.
+pub(crate) const REVERSED: Vector3 = vector!("i", "input");
+/// Input, minimum and maximum of a `clamp`.
+pub(crate) const CLAMPED: [Vector3; 3] = [
+    vector!("ip", "input", "", ["r", "g", "b"], ["R", "G", "B"]),
+    vector!("mn", "min", "", ["r", "g", "b"], ["R", "G", "B"]),
+    vector!("mx", "max", "", ["r", "g", "b"], ["R", "G", "B"]),
+];
+/// The translations and the rotations of a `pairBlend`.
+pub(crate) const BLENDED: [[Vector3; 2]; 2] = [
+    [vector!("it", "inTranslate", "1"), vector!("it", "inTranslate", "2")],
+    [vector!("ir", "inRotate", "1"), vector!("ir", "inRotate", "2")],
+];
 /// The order of rotations.
 pub const ROTATE_ORDER: Names = &["ro", "rotateOrder"];
 /// Whether a joint leaves out the scale of its parent.
