@@ -22,6 +22,8 @@ pub enum Cause {
     Unreadable(String),
     /// An edit of a node that no file holds.
     EditOfMissing,
+    /// An instance of a node, by its parent or its number.
+    Instance(String),
     /// A node that belongs to no nucleus, or whose nucleus is missing.
     NoNucleus,
     /// A nucleus without members.
@@ -48,6 +50,8 @@ pub enum Cause {
     Component(String),
     /// A connection between nodes that are carried over.
     Connection(String),
+    /// Playback of a cache outside of its range, or backwards.
+    CacheRange,
     /// Recorded results that lie beside the scene.
     Cache(String),
 }
@@ -62,7 +66,10 @@ impl Cause {
             Self::NoFile => "the referenced file is not there".to_owned(),
             Self::Recursion => "the file refers to itself".to_owned(),
             Self::Unreadable(why) => format!("the referenced file cannot be read: {why}"),
-            Self::EditOfMissing => "an edit of a reference names a node that no file holds".to_owned(),
+            Self::EditOfMissing => {
+                "an edit of a reference names a node or a connection that no file holds".to_owned()
+            }
+            Self::Instance(which) => format!("the instance `{which}` is not read"),
             Self::NoNucleus => "it is connected to no nucleus".to_owned(),
             Self::EmptyNucleus => "nothing is connected to it".to_owned(),
             Self::OtherMember(kind) => format!("a {kind} is not solved"),
@@ -75,6 +82,7 @@ impl Cause {
             Self::Driven(kind) => format!("it is driven by a {kind}, which is not read"),
             Self::Expression(why) => format!("the expression cannot be translated: {why}"),
             Self::Connection(why) => format!("the connection is refused: {why}"),
+            Self::CacheRange => "caches are played forwards, once".to_owned(),
             Self::Cache(_) => "the scene plays recorded results".to_owned(),
         }
     }
@@ -87,6 +95,7 @@ impl Cause {
             Self::Unit => "the unit stays Maya's default",
             Self::NoFile | Self::Recursion | Self::Unreadable(_) => "its nodes are missing",
             Self::EditOfMissing => "the edit is left out",
+            Self::Instance(_) => "the first instance stands for it, at its own place",
             Self::NoNucleus => "it is not simulated, as in Maya",
             Self::OtherMember(_) => "other members do not feel it",
             Self::Mesh(_) => "its object is left out; give the mesh with `--mesh NAME=FILE.obj`",
@@ -99,6 +108,7 @@ impl Cause {
             Self::Motion(_) => "it stands still; import its file into Maya for the motion",
             Self::Component(_) => "this part of the constraint does not act",
             Self::Connection(_) => "the connection is left out",
+            Self::CacheRange => "outside of the range of the cache the object is simulated",
             Self::Cache(how) => how,
         }
     }

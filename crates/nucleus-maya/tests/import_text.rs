@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use nucleus_graph::attributes::{n_cloth, point_emitter};
 use nucleus_graph::scene::{read_scene_text, write_scene};
 use nucleus_maya::ascii::SourceText;
 use nucleus_maya::{ImportOptions, Imported, import_text};
@@ -155,4 +156,114 @@ fn outputs_of_utility_nodes_may_be_connected_as_a_whole() {
     );
     near(read.origin("m", 2.0), [10.0, 7.0, 1.0]);
     assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
+}
+
+#[test]
+fn gaps_of_a_sparse_list_of_components_are_no_elements() {
+    let sparse = "setAttr \".ct\" 2; setAttr \".el\" 0; setAttr -s 3 \".ci\"; setAttr \".ci[2]\" 3; setAttr \".ci[5:6]\" 5 6;";
+    let read = read(&constrained_cloth(&[sparse]));
+    assert!(read.text().contains("[\"c.vtx[3]\", \"c.vtx[5:6]\"]"), "{}", read.text());
+}
+
+/// A scene with a reference `A` to an asset, each given by its text.
+fn referring(main: &str, asset: &str) -> Read {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("asset.ma"), format!("//Maya ASCII 2022 scene\n{asset}")).unwrap();
+    let reference = "file -r -ns \"A\" -rfn \"ARN\" -typ \"mayaAscii\" \"asset.ma\";\n";
+    read_at(&folder.path().join("main.ma"), &format!("{reference}{main}"))
+}
+
+/// A mesh `s` that a curve moves along x, from 1 at frame 0 to 3 at frame 24.
+fn moving() -> String {
+    format!(
+        "{}setAttr \"s.ty\" 2;\nsetAttr \"s.rz\" 0.5;\ncreateNode animCurveTL -n \"s_tx\";\n\
+         setAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 0 1 24 3;\nconnectAttr \"s_tx.o\" \"s.tx\";\n",
+        mesh("s")
+    )
+}
+
+#[test]
+fn a_referenced_file_has_its_own_units() {
+    let main = "currentUnit -l centimeter -a degree -t film;\n";
+    let read = referring(main, &format!("currentUnit -l meter -a radian -t ntscf;\n{}", moving()));
+    near(read.origin("A:s", 0.0), [100.0, 200.0, 0.0]);
+    // 24 frames of 1/60 s are 9.6 frames of 1/24 s.
+    near(read.origin("A:s", 9.6), [300.0, 200.0, 0.0]);
+    let tip = read.placed("A:s", [1.0, 0.0, 0.0], 0.0);
+    near(tip, [100.0 + 0.5_f64.cos(), 200.0 + 0.5_f64.sin(), 0.0]);
+}
+
+#[test]
+fn edits_and_curves_of_a_scene_are_in_its_own_units() {
+    let main = "currentUnit -l centimeter -a degree -t film;\ncreateNode reference -n \"ARN\";\n\
+                setAttr \".ed\" -type \"dataReferenceEdits\" \"ARN\" \"ARN\" 0 \"ARN\" 2\n\
+                2 \"|A:s\" \"translateY\" \" 7\"\n5 4 \"ARN\" \"|A:s.translateZ\" \"ARN.placeHolderList[1]\" \"\";\n\
+                createNode animCurveTL -n \"z\";\nsetAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 0 4 10 4;\n\
+                connectAttr \"z.o\" \"ARN.phl[1]\";\n";
+    let read = referring(main, &format!("currentUnit -l meter -a degree -t film;\n{}", moving()));
+    near(read.origin("A:s", 0.0), [100.0, 7.0, 4.0]);
+}
+
+#[test]
+fn an_edit_of_a_reference_may_disconnect() {
+    let edits = |edit: &str| {
+        format!(
+            "createNode reference -n \"ARN\";\nsetAttr \".ed\" -type \"dataReferenceEdits\" \"ARN\" \"ARN\" 0 \"ARN\" 1\n{edit};\n"
+        )
+    };
+    let read = referring(&edits("3 \"A:s_tx.output\" \"|A:s.translateX\" \"\""), &moving());
+    near(read.origin("A:s", 24.0), [0.0, 2.0, 0.0]);
+    let read = referring(&edits("3 \"A:s_tx.message\" \"|A:s.translateX\" \"\""), &moving());
+    near(read.origin("A:s", 24.0), [3.0, 2.0, 0.0]);
+    assert!(read.omits("|A:s.translateX", "connection that no file holds"), "{}", read.imported.omissions);
+}
+
+#[test]
+fn lengths_and_angles_of_emitters_and_cloths_are_converted() {
+    let body = "currentUnit -l meter -a radian -t film;\ncreateNode nucleus -n \"n\";\n\
+        createNode transform -n \"p\";\ncreateNode nParticle -n \"pShape\" -p \"p\";\n\
+        connectAttr \"pShape.cust\" \"n.niao[0]\";\nconnectAttr \"pShape.stst\" \"n.nias[0]\";\n\
+        createNode pointEmitter -n \"e\";\nsetAttr \".max\" 0.5; setAttr \".min\" 0.25; setAttr \".vsr\" 2; setAttr \".vsw\" 1;\n\
+        connectAttr \"e.ot[0]\" \"pShape.npt[0]\";\n";
+    let cloth = constrained_cloth(&[]).replace("createNode nucleus -n \"n\";\n", "");
+    let cloth = cloth.replace("\"n.niao[0]\"", "\"n.niao[1]\"").replace("\"n.nias[0]\"", "\"n.nias[1]\"");
+    let read = read(&format!("{body}{cloth}setAttr \"cShape.reae\" 2;\n"));
+    let graph = &read.imported.scene.graph;
+    let node = |name: &str| graph.node(graph.find(name).unwrap_or_else(|| panic!("{}", read.text())));
+    assert_eq!(node("e").get(&point_emitter::MAX_DISTANCE), 50.0);
+    assert_eq!(node("e").get(&point_emitter::MIN_DISTANCE), 25.0);
+    assert_eq!(node("e").get(&point_emitter::SECTION_RADIUS), 200.0);
+    assert_eq!(node("e").get(&point_emitter::VOLUME_SWEEP), 1.0_f64.to_degrees());
+    assert_eq!(node("c").get(&n_cloth::RESTITUTION_ANGLE), 2.0_f64.to_degrees());
+}
+
+#[test]
+fn instances_are_omissions() {
+    let parent =
+        "createNode transform -n \"second\";\nparent -s -nc -r -add \"|sheet|sheetShape\" \"second\";\n";
+    let scene = constrained_cloth(&[]).replace("sheetShape.w[0]", "|sheet|sheetShape.w[1]");
+    let read = read(&format!("{scene}{parent}"));
+    assert!(read.omits("sheetShape", "the instance `second` is not read"), "{}", read.imported.omissions);
+    assert!(
+        read.omits("c", "the instance `sheetShape.worldMesh[1]` is not read"),
+        "{}",
+        read.imported.omissions
+    );
+}
+
+#[test]
+fn a_cache_that_is_switched_off_is_not_played_and_its_cycles_are_omissions() {
+    let cache = |values: &str| {
+        format!(
+            "{}createNode cacheFile -n \"cf\";\n{values}\nconnectAttr \"cf.ir\" \"cShape.pfc\";\n",
+            constrained_cloth(&[])
+        )
+    };
+    let effect = |read: &Read| read.imported.omissions.to_string();
+    let off = read(&cache("setAttr \".enable\" no;"));
+    assert!(effect(&off).contains("it is simulated instead: its cache is switched off"), "{}", effect(&off));
+    let cycles = read(&cache("setAttr \".hold\" 5; setAttr \".postCycle\" 1; setAttr \".reverse\" yes;"));
+    for name in ["cf.hold", "cf.postCycle", "cf.reverse"] {
+        assert!(cycles.omits(name, "forwards, once"), "{}", effect(&cycles));
+    }
 }

@@ -37,7 +37,7 @@ impl Evaluator<'_> {
         }
         let above = scene.node(own).parent.filter(|_| scene.switch_or(own, names::INHERITS, true));
         let back = above.map_or(Some(Matrix::IDENTITY), |above| self.world(above, frame).inverse())?;
-        let unit = scene.units;
+        let (unit, own_unit) = (scene.units, scene.units_of(id));
         let offset = self.vector(id, OFFSET, [0.0; 3], frame);
         // Several targets share a position by weight; a turn comes from one.
         let single = targets.values().filter(|(_, weight)| *weight > 0.0).count() == 1;
@@ -52,7 +52,7 @@ impl Evaluator<'_> {
                     carried.point([0.0; 3])
                 }
                 _ => {
-                    turn = Matrix::rotation(offset.map(|x| x * unit.degrees), 0).then(&rigid(&world)?);
+                    turn = Matrix::rotation(offset.map(|x| x * own_unit.degrees), 0).then(&rigid(&world)?);
                     world.point(self.lengths(*target, names::ROTATE_PIVOT, frame))
                 }
             };
@@ -63,8 +63,8 @@ impl Evaluator<'_> {
             .map(|vector| self.lengths(own, vector, frame));
         let is_point = kind == "pointConstraint";
         let translate = std::array::from_fn(|k| {
-            let by = if is_point { offset[k] } else { 0.0 };
-            (at[k] - pivots[0][k] - pivots[1][k]) / unit.centimetres + by
+            let by = if is_point { offset[k] * own_unit.centimetres } else { 0.0 };
+            (at[k] - pivots[0][k] - pivots[1][k] + by) / unit.centimetres
         });
         if is_point {
             return Some([translate, [0.0; 3]]);
@@ -97,7 +97,7 @@ impl Evaluator<'_> {
 
     /// The placement of a driven transform in the space of a target of its parent constraint.
     fn target_offset(&self, id: NodeId, index: u32) -> Matrix {
-        let units = self.scene.units;
+        let units = self.scene.units_of(id);
         let all = |short: &str, long: &str| {
             let mut stored = [0.0; 3];
             let own = self.scene.assigned(id, &["tg", "target"]);

@@ -2,7 +2,7 @@
 
 use nucleus_graph::animation::{Curve, Infinity, Key, Tangent};
 
-use crate::scene::{MayaScene, NodeId};
+use crate::scene::{MayaScene, NodeId, Quantity};
 
 /// The tangent of one side of a key, by Maya's number.
 const FIXED: u8 = 1;
@@ -45,10 +45,11 @@ impl MayaCurve {
         let y = [list(&["kiy", "keyTanInY"]), list(&["koy", "keyTanOutY"])];
         let usual = scene.stored_or(id, &["tan", "tangentType"], f64::from(SPLINE)) as u8;
         let [per_frame, per_value] = tangent_units(scene, scene.kind(id));
+        let [frames, values] = key_units(scene, id);
         let at = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
         let key = |(k, pair): (usize, &[f64])| MayaKey {
-            frame: pair[0],
-            value: pair[1],
+            frame: pair[0] * frames,
+            value: pair[1] * values,
             kinds: [0, 1].map(|side| match at(&kinds[side], k) as u8 {
                 0 => usual,
                 kind => kind,
@@ -242,7 +243,20 @@ fn fixed([frames, values]: [f64; 2]) -> f64 {
     if frames > 0.0 { values / frames } else { 0.0 }
 }
 
-/// Frames and values of the file in the units of a stored tangent: seconds, and centimetres or radians.
+/// Frames and values of the scene in those of the file of a curve.
+fn key_units(scene: &MayaScene, id: NodeId) -> [f64; 2] {
+    let (own, units) = (scene.units_of(id), scene.units);
+    let kind = scene.kind(id);
+    let quantity = match kind {
+        "animCurveTL" | "animCurveUL" => Quantity::Length,
+        "animCurveTA" | "animCurveUA" => Quantity::Angle,
+        _ => Quantity::Number,
+    };
+    let frames = if kind.starts_with("animCurveU") { 1.0 } else { units.fps / own.fps };
+    [frames, own.of(quantity) / units.of(quantity)]
+}
+
+/// Frames and values of the scene in the units of a stored tangent: seconds, and centimetres or radians.
 fn tangent_units(scene: &MayaScene, kind: &str) -> [f64; 2] {
     let units = scene.units;
     let value = match kind {

@@ -119,10 +119,23 @@ impl<'a> PlugPath<'a> {
         (self.segments().next().unwrap_or(Segment { name: "", range: None }), PlugPath(rest))
     }
 
+    /// Whether two paths end at the same attribute, each in its short or its full name.
+    pub fn is_same(self, other: PlugPath) -> bool {
+        let (a, b) = (self.last(), other.last());
+        let is_same_element = a.range.is_none() || b.range.is_none() || a.range == b.range;
+        is_same_element && (a.name == b.name || a.name == initials(b.name) || initials(a.name) == b.name)
+    }
+
     /// The last step.
     pub fn last(self) -> Segment<'a> {
         self.segments().last().unwrap_or(Segment { name: "", range: None })
     }
+}
+
+/// Maya's usual short name of an attribute: `tx` of `translateX`, `iog` of `instObjGroups`.
+fn initials(name: &str) -> String {
+    let is_kept = |(at, c): &(usize, char)| *at == 0 || c.is_ascii_uppercase() || c.is_ascii_digit();
+    name.char_indices().filter(is_kept).map(|(_, c)| c.to_ascii_lowercase()).collect()
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ fn tweak(evaluator: &Evaluator, id: NodeId, mesh: &mut Poly) {
             Some('z' | 'Z') => Some(2),
             _ => None,
         });
-        let factor = scene.units.centimetres;
+        let factor = scene.units_of(id).centimetres;
         for (k, x) in set.values.numbers().filter(|x| x.is_finite()).enumerate() {
             let (point, axis) = part.map_or((first as usize + k / 3, k % 3), |part| (first as usize, part));
             if let Some(point) = mesh.points.get_mut(point) {

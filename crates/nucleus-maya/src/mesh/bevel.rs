@@ -19,7 +19,7 @@ pub(super) fn bevel(scene: &MayaScene, id: NodeId, mesh: &Poly, picked: &Compone
     }
     let offset = match scene.switch_or(id, &["oaf", "offsetAsFraction"], true) {
         true => scene.stored_or(id, &["f", "fraction"], 0.5).clamp(0.0, 1.0) * half_of_shortest(mesh, &edges),
-        false => scene.stored_or(id, &["o", "offset"], 0.2) * scene.units.centimetres,
+        false => scene.stored_or(id, &["o", "offset"], 0.2) * scene.units_of(id).centimetres,
     };
     beveled(mesh, offset)
 }

@@ -34,7 +34,7 @@ pub(crate) fn stored(scene: &MayaScene, id: NodeId) -> Result<Option<Poly>, Stri
 /// Adds the tweaks of a shape to its points, or to those that its history makes.
 pub(crate) fn add_tweaks(scene: &MayaScene, id: NodeId, mesh: &mut Poly) {
     let tweaks = scene.array(id, &["pt", "pnts"], 3, &[&["px", "pntx"], &["py", "pnty"], &["pz", "pntz"]]);
-    add(&mut mesh.points, &tweaks.unwrap_or_default(), scene.units.centimetres);
+    add(&mut mesh.points, &tweaks.unwrap_or_default(), scene.units_of(id).centimetres);
 }
 
 /// Adds offsets, times a factor, to points.

@@ -27,7 +27,7 @@ const PIVOT: Vector3 =
 
 /// Extrudes the picked faces. `None` if the node turns them, which is not carried out.
 pub(super) fn extrude(scene: &MayaScene, id: NodeId, mesh: &Poly, picked: &Components) -> Option<Poly> {
-    let unit = scene.units.centimetres;
+    let unit = scene.units_of(id).centimetres;
     let length = |vector| scene.stored_vector(id, vector, [0.0; 3]).map(|x| x * unit);
     if scene.stored_vector(id, ROTATE, [0.0; 3]).iter().any(|x| x.abs() > 1e-9) {
         return None;

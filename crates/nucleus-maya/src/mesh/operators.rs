@@ -65,7 +65,7 @@ pub(crate) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation 
     let picked = || {
         scene.value(id, &["ics", "inputComponents"]).map(|values| Components::of(&values)).unwrap_or_default()
     };
-    let unit = scene.units.centimetres;
+    let unit = scene.units_of(id).centimetres;
     match kind {
         _ if PASSED_OVER.contains(&kind) => {}
         "polyTweak" => {

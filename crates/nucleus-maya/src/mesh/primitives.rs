@@ -20,7 +20,8 @@ const MAX_POINTS: u64 = 20_000_000;
 
 /// The Nucleus primitive that a creation node makes, if it is one.
 pub(crate) fn own_primitive(scene: &MayaScene, id: NodeId) -> Option<Primitive> {
-    let length = |names: &[&str], default| scene.stored_or(id, names, default) * scene.units.centimetres;
+    let length =
+        |names: &[&str], default| scene.stored_or(id, names, default) * scene.units_of(id).centimetres;
     let count = |names: &[&str], default| scene.count_or(id, names, default);
     let [width, height] = [&["w", "width"], &["h", "height"]];
     // Older versions have longer short names of subdivisions.
@@ -86,7 +87,8 @@ fn of_own(own: &Primitive) -> Result<Poly, String> {
 }
 
 fn other(scene: &MayaScene, id: NodeId) -> Option<Result<Poly, String>> {
-    let length = |names: &[&str], default| scene.stored_or(id, names, default) * scene.units.centimetres;
+    let length =
+        |names: &[&str], default| scene.stored_or(id, names, default) * scene.units_of(id).centimetres;
     let count = |names: &[&str], default| scene.count_or(id, names, default);
     let radius = |default| length(&["r", "radius"], default);
     let height = length(&["h", "height"], 2.0);

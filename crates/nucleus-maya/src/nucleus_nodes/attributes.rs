@@ -9,7 +9,7 @@ use nucleus_graph::attributes::{
 use nucleus_graph::graph::{Channel, NodeId as OwnId, Setting};
 
 use crate::omissions::Cause;
-use crate::scene::{ANY, NodeId, Set};
+use crate::scene::{ANY, NodeId, Quantity, Set};
 
 use super::importer::Importer;
 use super::kept::{MARK_AUTOMATIC, MARK_NAME, MARK_PAINT};
@@ -178,8 +178,9 @@ impl Importer<'_> {
                 if self.is_fed_by_kept(from, &names) {
                     return None;
                 }
+                let factor = scene.units.of(Quantity::of(scene.kind(from), row.name));
                 let channel =
-                    self.values.channel((from, &names[..]), 1.0, self.frames, &mut self.omissions)?;
+                    self.values.channel((from, &names[..]), factor, self.frames, &mut self.omissions)?;
                 Some(of_channel(channel, row))
             }
             Kind::Texture => {
@@ -193,10 +194,7 @@ impl Importer<'_> {
                 .string(from, &names)
                 .filter(|text| self.is_own || !text.is_empty())
                 .map(|text| Setting::Fixed(Value::Text(text))),
-            Kind::Ints => {
-                let all = scene.array(from, &names, 1, &[])?;
-                Some(Setting::Fixed(Value::Ints(all.into_iter().map(|x| x.max(0.0) as u32).collect())))
-            }
+            Kind::Ints => Some(Setting::Fixed(Value::Ints(scene.listed(from, &names)))),
             Kind::Floats | Kind::Vectors => self.list(from, row, node_type),
             Kind::Ramp => ramp(&self.array_sets(from, &names))
                 .map(|points| Setting::Fixed(Value::Ramp(Cow::Owned(points)))),

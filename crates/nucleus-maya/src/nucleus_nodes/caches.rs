@@ -47,6 +47,7 @@ impl Importer<'_> {
             self.graph.unset(to, &n_base::PLAY_FROM_CACHE.row);
             let Some(cache) = self.cache_of(from) else { continue };
             let name = self.graph.node(to).name().to_owned();
+            self.report_cycles(cache);
             let how = match self.play_cache([from, cache], to)? {
                 Ok(how) => how,
                 Err(why) => format!("it is simulated instead: {why}"),
@@ -94,6 +95,9 @@ impl Importer<'_> {
     /// The positions of an object at the frames that its cache has, in world space; else why it cannot be played.
     fn recorded_frames(&self, [from, cache]: [NodeId; 2], to: OwnId) -> Result<Recorded, String> {
         let scene = self.scene;
+        if !scene.switch_or(cache, &["e", "en", "enb", "enable"], true) {
+            return Err("its cache is switched off".to_owned());
+        }
         let text = |names: &[&str]| scene.string(cache, names).unwrap_or_default();
         let (name, folder) = (text(&["cn", "cacheName"]), text(&["cp", "cachePath"]));
         // A name is no path.
@@ -131,6 +135,20 @@ impl Importer<'_> {
                 Err(format!("`{name}` has {} points, its mesh {points}; {compare}", frames[0].1.len()))
             }
             None => Ok(Recorded { name, frames }),
+        }
+    }
+
+    /// Notes what a cache plays outside of its range, or backwards, which is not carried out.
+    fn report_cycles(&mut self, cache: NodeId) {
+        let names: [&[&str]; 4] = [
+            &["hold", "h", "ho", "hld"],
+            &["preCycle", "prc", "prec"],
+            &["postCycle", "poc", "posc"],
+            &["reverse", "r", "rev"],
+        ];
+        for names in names.into_iter().filter(|names| self.scene.stored_or(cache, names, 0.0) != 0.0) {
+            let what = format!("{}.{}", self.scene.name(cache), names[0]);
+            self.omissions.add(what, Cause::CacheRange);
         }
     }
 

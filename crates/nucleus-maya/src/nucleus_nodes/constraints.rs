@@ -124,8 +124,7 @@ impl Importer<'_> {
             };
             let kind = scene.count_or(node, &["ct", "componentType"], 0);
             let elements = scene.count_or(node, &["el", "elements"], LISTED);
-            let list = scene.array(node, &["ci", "componentIndices"], 1, &[]).unwrap_or_default();
-            let mut list: Vec<u32> = list.into_iter().map(|x| x.max(0.0) as u32).collect();
+            let mut list = scene.listed(node, &["ci", "componentIndices"]);
             if let (POINT, Some(points), false) = (kind, self.points_of(own), self.is_own) {
                 let all = list.len();
                 list.retain(|point| (*point as usize) < points);

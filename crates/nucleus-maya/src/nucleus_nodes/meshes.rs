@@ -50,7 +50,7 @@ impl Importer<'_> {
     /// The Nucleus primitive that a shape shows unchanged.
     fn own_primitive(&self, id: NodeId) -> Option<Plan> {
         let scene = self.scene;
-        if scene.units.centimetres != 1.0 || scene.kind(id) != "mesh" {
+        if scene.units_of(id).centimetres != 1.0 || scene.kind(id) != "mesh" {
             return None;
         }
         let source = scene.source(id, &["i", "inMesh"], None)?.from.node;

@@ -14,6 +14,14 @@ impl Importer<'_> {
     pub(super) fn connect_object(&mut self, from: NodeId, to: OwnId) {
         let Some(nucleus) = nucleus_of(self.scene, from).and_then(|id| self.own_of(id)) else { return };
         let source = self.scene.source(from, &["imsh", "inputMesh"], None);
+        if let Some(wire) = source
+            && let Some((number @ 1.., _)) = self.scene.path(wire.from).last().range
+            && self.scene.kind(wire.from.node) == "mesh"
+        {
+            let what = self.graph.node(to).name().to_owned();
+            let which = format!("{}.worldMesh[{number}]", self.scene.name(wire.from.node));
+            self.omissions.add(what, Cause::Instance(which));
+        }
         let mesh = source.and_then(|wire| self.own_of(wire.from.node));
         self.create(to, &Creation::Object { mesh, nucleus });
     }

@@ -1,8 +1,11 @@
 //! Values of attributes, by all names that they may have in a file.
 
+use std::collections::BTreeMap;
+
 use crate::ascii::{PlugPath, Segment, Values};
 
-use super::graph::{MayaScene, NodeId, Wire};
+use super::graph::{Assigned, MayaScene, NodeId, Wire};
+use super::units::Quantity;
 
 /// The names of an attribute: short, long, and those of older versions.
 pub type Names = &'static [&'static str];
@@ -45,6 +48,10 @@ impl MayaScene {
 
     /// The last value of a plain attribute.
     pub fn value<'a>(&'a self, id: NodeId, names: &'a [&'a str]) -> Option<Values<'a>> {
+        self.last_assigned(id, names).map(|(_, values)| values)
+    }
+
+    fn last_assigned<'a>(&'a self, id: NodeId, names: &'a [&'a str]) -> Option<(&'a Assigned, Values<'a>)> {
         let all = self.node(id).assigned.iter().rev();
         let mut found = all.filter_map(|one| {
             let path = PlugPath(self.text(one.plug));
@@ -52,14 +59,26 @@ impl MayaScene {
                 return None;
             }
             let data_type = Some(self.text(one.data_type)).filter(|name| !name.is_empty());
-            Some(Values::new(data_type, self.text(one.value))).filter(|values| !values.is_empty())
+            let values = Some(Values::new(data_type, self.text(one.value)));
+            Some(one).zip(values.filter(|values| !values.is_empty()))
         });
         found.next()
     }
 
-    /// A stored number, finite.
+    /// A stored number, finite. Lengths and angles are in the units of the scene.
     pub fn stored(&self, id: NodeId, names: &[&str]) -> Option<f64> {
-        self.value(id, names)?.number().filter(|x| x.is_finite())
+        let (assigned, values) = self.last_assigned(id, names)?;
+        values.number().map(|x| x * self.unit_factor(id, assigned)).filter(|x| x.is_finite())
+    }
+
+    /// Units of the scene in a unit of the file that sets an attribute; 1 for an attribute without a unit.
+    fn unit_factor(&self, id: NodeId, assigned: &Assigned) -> f64 {
+        let units = self.units_in(assigned.value.file);
+        if units == self.units {
+            return 1.0;
+        }
+        let quantity = Quantity::of(self.kind(id), PlugPath(self.text(assigned.plug)).last().name);
+        units.of(quantity) / self.units.of(quantity)
     }
 
     /// A stored number, or a default.
@@ -82,12 +101,17 @@ impl MayaScene {
         self.value(id, names)?.text()
     }
 
-    /// The stored components of a vector, each with its default where it is not set.
+    /// The stored components of a vector, each with its default where it is not set. Lengths and angles are in the units
+    /// of the scene.
     pub fn stored_vector(&self, id: NodeId, vector: Vector3, default: [f64; 3]) -> [f64; 3] {
         let mut value = default;
         for one in &self.node(id).assigned {
             let last = PlugPath(self.text(one.plug)).last();
-            let numbers = || Values::new(None, self.text(one.value)).numbers().filter(|x| x.is_finite());
+            let numbers = || {
+                let factor = self.unit_factor(id, one);
+                let numbers = Values::new(None, self.text(one.value)).numbers();
+                numbers.map(move |x| x * factor).filter(|x| x.is_finite())
+            };
             if vector.whole.contains(&last.name) {
                 numbers().take(3).enumerate().for_each(|(part, x)| value[part] = x);
             } else if let Some(part) = vector.parts.iter().position(|names| names.contains(&last.name)) {
@@ -138,6 +162,16 @@ impl MayaScene {
             all.resize(all.len() + width - rest, 0.0);
         }
         Some(all)
+    }
+
+    /// The elements of a list that files give, in the order of their indices: gaps are no elements.
+    pub fn listed(&self, id: NodeId, names: &[&str]) -> Vec<u32> {
+        let mut all: BTreeMap<u32, u32> = BTreeMap::new();
+        for set in self.assigned(id, names) {
+            let Some((first, _)) = set.segment.range else { continue };
+            all.extend((first..).zip(set.values.numbers().map(|x| x.max(0.0) as u32)));
+        }
+        all.into_values().collect()
     }
 
     /// The connection that arrives at an attribute, by the last step of its path. With an index, at that element.

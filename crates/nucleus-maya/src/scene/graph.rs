@@ -71,6 +71,8 @@ pub struct MayaScene {
     leaving: HashMap<NodeId, Vec<u32>>,
     /// The units of the scene.
     pub units: Units,
+    /// The units of each file. Edits of references are in those of the scene.
+    pub(super) file_units: Vec<Units>,
     /// First and last frame of the playback range.
     pub playback: Option<[f64; 2]>,
     /// `fileInfo` entries.
@@ -93,6 +95,16 @@ impl MayaScene {
     /// The name of a node.
     pub fn name(&self, id: NodeId) -> &str {
         &self.node(id).name
+    }
+
+    /// The units of the file that creates a node.
+    pub fn units_of(&self, id: NodeId) -> Units {
+        self.units_in(self.node(id).file)
+    }
+
+    /// The units of a file.
+    pub(super) fn units_in(&self, file: u16) -> Units {
+        self.file_units.get(usize::from(file)).copied().unwrap_or(self.units)
     }
 
     /// All nodes.
@@ -169,6 +181,24 @@ impl MayaScene {
         self.wires.push(Wire { from, to });
         self.leaving.entry(from.node).or_default().push(index);
         self.arriving.entry(to.node).or_default().push(index);
+    }
+
+    /// Removes the connections between two attributes. Returns whether no connection between their nodes is left over that
+    /// may have been meant.
+    pub(super) fn disconnect(&mut self, [from, to]: [NodeId; 2], [out, input]: [PlugPath; 2]) -> bool {
+        let joins = |wire: &Wire| wire.from.node == from && wire.to.node == to;
+        let is_it = |wire: &Wire| {
+            joins(wire) && self.path(wire.from).is_same(out) && self.path(wire.to).is_same(input)
+        };
+        let kept: Vec<Wire> = self.wires.iter().copied().filter(|wire| !is_it(wire)).collect();
+        if kept.len() == self.wires.len() {
+            return !kept.iter().any(joins);
+        }
+        self.wires.clear();
+        self.arriving.clear();
+        self.leaving.clear();
+        kept.into_iter().for_each(|wire| self.connect(wire.from, wire.to));
+        true
     }
 
     /// Connections to inputs of a node.

@@ -21,4 +21,4 @@ pub use attributes::{ANY, Names, Set, Vector3};
 pub(crate) use reference::locate;
 
 pub use graph::{Assigned, MayaNode, MayaScene, NodeId, PlugRef, Wire};
-pub use units::Units;
+pub use units::{Quantity, Units};

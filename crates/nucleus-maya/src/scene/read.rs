@@ -152,6 +152,8 @@ impl Reader<'_> {
         // The text is taken out while it is read, so that the scene can change.
         let text = source.text;
         self.scene.texts.push(SourceText { path: source.path, text: String::new() });
+        // A file that states no units has those of the scene.
+        self.scene.file_units.resize(usize::from(file) + 1, self.scene.units);
         let mut reader = FileReader { file, text: &text, namespace, current: None };
         let (mut known, mut references) = (text.starts_with("//Maya ASCII"), Vec::new());
         let mut wires = Vec::new();
@@ -209,8 +211,7 @@ impl Reader<'_> {
                 }
             }
             "parent" => self.parent(reader, &mut tokens),
-            "currentUnit" if is_main => self.current_unit(&mut tokens),
-            "currentUnit" => {}
+            "currentUnit" => self.current_unit(&mut tokens, reader.file, is_main),
             "fileInfo" => {
                 let arguments = Arguments::of(&mut tokens, NO_FLAGS);
                 if let (true, [key, value]) = (is_main, &arguments.plain[..]) {
@@ -302,17 +303,19 @@ impl Reader<'_> {
         }
         let Some((Some(parent), children)) = ids.split_last() else { return };
         for child in children.iter().flatten() {
-            // An instance is a second parent; the first one places the node.
             let loops = self.scene.self_and_ancestors(*parent).contains(child);
-            if !arguments.has("add") && !loops {
+            if arguments.has("add") {
+                let under = self.scene.name(*parent).to_owned();
+                self.scene.omissions.add(self.scene.name(*child).to_owned(), Cause::Instance(under));
+            } else if !loops {
                 self.scene.nodes[child.0 as usize].parent = Some(*parent);
             }
         }
     }
 
-    fn current_unit(&mut self, tokens: &mut Tokens) {
+    fn current_unit(&mut self, tokens: &mut Tokens, file: u16, is_main: bool) {
         let arguments = Arguments::of(tokens, CURRENT_UNIT);
-        let units = &mut self.scene.units;
+        let units = &mut self.scene.file_units[usize::from(file)];
         let take = |flag: &str, set: &mut dyn FnMut(&str) -> bool| {
             let name = arguments.get(flag).map(|token| token.text())?;
             (!set(&name)).then(|| name.into_owned())
@@ -322,6 +325,9 @@ impl Reader<'_> {
             take("a", &mut |name| units.set_angle(name)),
             take("t", &mut |name| units.set_time(name)),
         ];
+        if is_main {
+            self.scene.units = *units;
+        }
         for name in unknown.into_iter().flatten() {
             self.scene.omissions.add(name, Cause::Unit);
         }

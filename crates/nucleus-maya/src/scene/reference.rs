@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::ascii::{Arguments, SourceText, Span, Token, Tokens};
+use crate::ascii::{Arguments, PlugPath, SourceText, Span, Token, Tokens};
 use crate::omissions::Cause;
 
 use super::graph::{Assigned, MayaScene, NodeId, PlugRef};
@@ -126,9 +126,14 @@ fn apply(scene: &mut MayaScene, edit: &Edit, placeholders: &mut Vec<(String, Str
             None => scene.omissions.add((*node).to_owned(), Cause::EditOfMissing),
         },
         (3, [from, to, ..]) => {
+            disconnect(scene, from, to);
+        }
+        (5, [_, plug, placeholder, ..]) if is_placeholder(placeholder) => {
+            placeholders.push(((*placeholder).to_owned(), (*plug).to_owned()));
+        }
+        (5, [_, from, to, ..]) => {
             connect(scene, from, to);
         }
-        (5, [_, plug, placeholder, ..]) => placeholders.push(((*placeholder).to_owned(), (*plug).to_owned())),
         _ => {}
     }
 }
@@ -177,6 +182,22 @@ fn own_text(scene: &mut MayaScene, parts: &[&str]) -> Option<Vec<Span>> {
         spans.push(Span { file: number, start, end: u32::try_from(text.len()).ok()? });
     }
     Some(spans)
+}
+
+/// Whether a plug is an element of the list of placeholders of a reference node.
+fn is_placeholder(plug: &str) -> bool {
+    plug.split_once('.').is_some_and(|(_, path)| {
+        matches!(path.split('[').next().unwrap_or_default(), "phl" | "placeHolderList")
+    })
+}
+
+fn disconnect(scene: &mut MayaScene, from: &str, to: &str) -> Option<()> {
+    let (from, out) = from.split_once('.')?;
+    let (to, input) = to.split_once('.')?;
+    if !scene.disconnect([scene.find(from)?, scene.find(to)?], [PlugPath(out), PlugPath(input)]) {
+        scene.omissions.add(format!("{to}.{input}"), Cause::EditOfMissing);
+    }
+    Some(())
 }
 
 fn connect(scene: &mut MayaScene, from: &str, to: &str) -> Option<()> {

@@ -17,6 +17,49 @@ impl Default for Units {
     }
 }
 
+/// What an attribute measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// A length: in a file, in its unit of length.
+    Length,
+    /// An angle: in a file, in its unit of angle.
+    Angle,
+    /// A number without a unit.
+    Number,
+}
+
+impl Quantity {
+    /// That of an attribute of a node of a type, or of a component of it.
+    pub fn of(kind: &str, name: &str) -> Self {
+        match (kind, name) {
+            ("pointEmitter", "max" | "maxDistance" | "min" | "minDistance" | "vsr" | "sectionRadius") => {
+                Self::Length
+            }
+            ("pointEmitter", "vsw" | "volumeSweep") | ("nCloth", "reae" | "restitutionAngle") => Self::Angle,
+            // The same names are other attributes on nodes of construction history.
+            (kind, _) if kind.starts_with("poly") => Self::Number,
+            _ => Self::of_transform(name),
+        }
+    }
+
+    fn of_transform(name: &str) -> Self {
+        match name.strip_suffix(['x', 'y', 'z', 'X', 'Y', 'Z']).unwrap_or(name) {
+            "t"
+            | "translate"
+            | "rp"
+            | "rotatePivot"
+            | "rpt"
+            | "rotatePivotTranslate"
+            | "sp"
+            | "scalePivot"
+            | "spt"
+            | "scalePivotTranslate" => Self::Length,
+            "r" | "rotate" | "ra" | "rotateAxis" | "jo" | "jointOrient" => Self::Angle,
+            _ => Self::Number,
+        }
+    }
+}
+
 /// Maya's names of frame rates.
 const RATES: [(&str, f64); 7] = [
     ("game", 15.0),
@@ -29,6 +72,15 @@ const RATES: [(&str, f64); 7] = [
 ];
 
 impl Units {
+    /// Centimetres or degrees in a unit of a quantity; 1 for a plain number.
+    pub fn of(&self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Length => self.centimetres,
+            Quantity::Angle => self.degrees,
+            Quantity::Number => 1.0,
+        }
+    }
+
     /// Takes a unit of length; returns whether it is known.
     pub fn set_length(&mut self, name: &str) -> bool {
         self.centimetres = match name {
