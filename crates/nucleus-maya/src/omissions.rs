@@ -34,6 +34,10 @@ pub enum Cause {
     Mesh(String),
     /// A node in the history or deformation of a mesh that is passed over, by its type.
     Operator(String),
+    /// Skinning by dual quaternions, or by a blend of both methods.
+    Skinning,
+    /// A mesh file of a Nucleus scene that is not beside the new scene.
+    NoMeshFile(String),
     /// An attribute whose value does not fit, and why.
     Value(String),
     /// Attributes that the simulation has no use for.
@@ -75,6 +79,8 @@ impl Cause {
             Self::OtherMember(kind) => format!("a {kind} is not solved"),
             Self::Mesh(why) => format!("its mesh cannot be built: {why}"),
             Self::Operator(kind) => format!("{kind} is not carried out"),
+            Self::Skinning => "skinning by dual quaternions is carried out linearly".to_owned(),
+            Self::NoMeshFile(file) => format!("`{file}` is not there: the mesh in the Maya scene is used"),
             Self::Value(why) | Self::Component(why) | Self::Approximate(why) | Self::Motion(why) => {
                 why.clone()
             }
@@ -102,6 +108,8 @@ impl Cause {
             Self::Operator(_) => {
                 "the mesh is as before this node; give it with `--mesh NAME=FILE.obj` if that matters"
             }
+            Self::Skinning => "the mesh is thinner where joints twist or bend far",
+            Self::NoMeshFile(_) => "the mesh stands still, with its points at the first frame",
             Self::Value(_) => "the attribute keeps its default, or the nearest valid value",
             Self::Driven(_) | Self::Expression(_) => "it keeps the value stored in the file",
             Self::Approximate(_) => "small differences",

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use nucleus_graph::attributes::{n_cloth, point_emitter};
 use nucleus_graph::scene::{read_scene_text, write_scene};
+use nucleus_maya::animation::Evaluator;
 use nucleus_maya::ascii::SourceText;
+use nucleus_maya::scene::MayaScene;
 use nucleus_maya::{ImportOptions, Imported, import_text};
 
 /// An imported scene, and the text of its mesh files.
@@ -266,4 +268,69 @@ fn a_cache_that_is_switched_off_is_not_played_and_its_cycles_are_omissions() {
     for name in ["cf.hold", "cf.postCycle", "cf.reverse"] {
         assert!(cycles.omits(name, "forwards, once"), "{}", effect(&cycles));
     }
+}
+
+#[test]
+fn shear_is_kept_where_rotation_and_scale_are_animated() {
+    let body = format!(
+        "{}setAttr \"m.rp\" -type \"double3\" 1 0 0; setAttr \"m.sp\" -type \"double3\" 0 2 0;\n\
+         setAttr \"m.sh\" -type \"double3\" 0.5 -0.25 1;\ncreateNode animCurveTA -n \"rz\";\n\
+         setAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 1 0 11 90;\ncreateNode animCurveTU -n \"sx\";\n\
+         setAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 1 1 11 3;\n\
+         connectAttr \"rz.o\" \"m.rz\";\nconnectAttr \"sx.o\" \"m.sx\";\n",
+        mesh("m")
+    );
+    let text =
+        SourceText::from_bytes(Path::new("a.ma"), format!("//Maya ASCII\n{body}").into_bytes()).unwrap();
+    let maya = MayaScene::of_text(text).unwrap();
+    let read = read(&body);
+    for (frame, point) in [(1.0, [1.0, 2.0, 3.0]), (6.0, [-1.0, 0.5, 2.0]), (11.0, [0.0, 3.0, -1.0])] {
+        let world = Evaluator::new(&maya).world(maya.find("m").unwrap(), frame);
+        near(read.placed("m", point, frame), world.point(point));
+    }
+    assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
+}
+
+/// A quad whose blend shape has a weight from 0 at frame 0 to 1 at frame 4.
+fn blended(targets: &str) -> Read {
+    read(&format!(
+        "setAttr \"s.b\" -type \"string\" \"playbackOptions -min 0 -max 4 \";\n\
+         createNode transform -n \"q\";\ncreateNode mesh -n \"base\" -p \"q\";\nsetAttr \".io\" yes;\n\
+         setAttr -s 3 \".vt[0:2]\" 0 0 0 1 0 0 0 0 1;\nsetAttr -s 3 \".ed[0:2]\" 0 1 0 1 2 0 2 0 0;\n\
+         setAttr -s 1 \".fc[0]\" -type \"polyFaces\" f 3 0 1 2;\ncreateNode mesh -n \"shown\" -p \"q\";\n\
+         createNode blendShape -n \"bs\";\nsetAttr \".w[0]\" 0;\n{targets}\ncreateNode animCurveTU -n \"w\";\n\
+         setAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 0 0 4 1;\nconnectAttr \"w.o\" \"bs.w[0]\";\n\
+         connectAttr \"base.w\" \"bs.ip[0].ig\";\nconnectAttr \"bs.og[0]\" \"shown.i\";\n"
+    ))
+}
+
+/// The height of the first two points at a frame.
+fn heights(read: &Read, frame: usize) -> [f64; 2] {
+    let name = format!("meshes/q.{frame:04}.obj");
+    let text = read.files.get(&name).unwrap_or_else(|| panic!("no {name} in {:?}", read.files.keys()));
+    let points = text.lines().filter_map(|line| line.strip_prefix("v "));
+    let all: Vec<f64> = points.map(|line| line.split(' ').nth(1).unwrap().parse().unwrap()).collect();
+    [all[0], all[1]]
+}
+
+#[test]
+fn a_blend_shape_passes_through_its_in_betweens() {
+    let read = blended(
+        "setAttr \".it[0].itg[0].iti[6000].ipt\" -type \"pointArray\" 1 0 2 0 1;\n\
+         setAttr \".it[0].itg[0].iti[6000].ict\" -type \"componentList\" 1 \"vtx[0]\";\n\
+         setAttr \".it[0].itg[0].iti[5500].ipt\" -type \"pointArray\" 1 0 5 0 1;\n\
+         setAttr \".it[0].itg[0].iti[5500].ict\" -type \"componentList\" 1 \"vtx[0]\";",
+    );
+    let found: Vec<f64> = (1..=4).map(|frame| heights(&read, frame)[0]).collect();
+    assert_eq!(found, [2.5, 5.0, 3.5, 2.0]);
+}
+
+#[test]
+fn painted_weights_of_a_blend_shape_scale_its_targets() {
+    let read = blended(
+        "setAttr -s 2 \".it[0].itg[0].tw[0:1]\" 0.5 1;\nsetAttr \".it[0].bw[1]\" 0.25;\n\
+         setAttr \".it[0].itg[0].iti[6000].ipt\" -type \"pointArray\" 2 0 2 0 1 0 2 0 1;\n\
+         setAttr \".it[0].itg[0].iti[6000].ict\" -type \"componentList\" 1 \"vtx[0:1]\";",
+    );
+    assert_eq!(heights(&read, 4), [1.0, 0.5]);
 }

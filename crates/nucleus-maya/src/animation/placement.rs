@@ -38,6 +38,13 @@ impl Matrix {
         all
     }
 
+    /// A shear: xy, xz, yz.
+    pub fn shearing([xy, xz, yz]: [f64; 3]) -> Self {
+        let mut all = Self::IDENTITY;
+        (all.0[1][0], all.0[2][0], all.0[2][1]) = (xy, xz, yz);
+        all
+    }
+
     /// A rotation by angles in degrees, in an order of axes.
     pub fn rotation(degrees: [f64; 3], order: usize) -> Self {
         let about = |axis: usize| {
@@ -147,11 +154,7 @@ impl Evaluator<'_> {
             names::TRANSLATE,
         ]
         .map(|vector| self.lengths(id, vector, frame));
-        let mut sheared = Matrix::IDENTITY;
-        sheared.0[1][0] = shear[0];
-        sheared.0[2][0] = shear[1];
-        sheared.0[2][1] = shear[2];
-        let mut all = Matrix::scaling(scale).then(&sheared);
+        let mut all = Matrix::scaling(scale).then(&Matrix::shearing(shear));
         if self.scene.kind(id) == "joint" {
             let orient = Matrix::rotation(self.degrees(id, names::JOINT_ORIENT, frame), 0);
             all = all.then(&axis).then(&turn).then(&orient);

@@ -1,18 +1,21 @@
-//! Blend shapes: each target adds its difference from the base, times its weight.
+//! Blend shapes: each target adds its difference from the base, times its weight. Targets of one group that are reached at
+//! other weights than 1 are in-betweens: the shape moves from one to the next.
+
+use std::collections::BTreeMap;
 
 use crate::animation::Evaluator;
 use crate::mesh::{Built, Components, InputMesh, Poly};
 use crate::omissions::Cause;
-use crate::scene::NodeId;
+use crate::scene::{NodeId, Set};
 
-/// The item of a target that is reached at weight 1.
-const FULL: u32 = 6000;
+/// The item of a target that is reached at weight 0; a weight of 1 is a thousand more.
+const NONE: u32 = 5000;
 
 /// Offsets of the points that a target moves.
-struct Target {
-    weight: f64,
-    offsets: Vec<(u32, [f64; 3])>,
-}
+type Offsets = Vec<(u32, [f64; 3])>;
+
+/// The targets of a group, by their items.
+type Targets = BTreeMap<u32, Offsets>;
 
 pub(super) fn apply(
     evaluator: &Evaluator,
@@ -24,30 +27,94 @@ pub(super) fn apply(
     built: &mut Built,
 ) {
     let weights = evaluator.elements(id, &["w", "weight"], frame);
-    let mut targets = connected(evaluator, id, &weights, mesh, input, built);
-    let known: Vec<u32> = targets.iter().map(|(index, _)| *index).collect();
-    targets.extend(stored(evaluator, id, &weights).into_iter().filter(|(index, _)| !known.contains(index)));
-    for (_, target) in targets {
-        let weight = target.weight * envelope;
-        for (point, offset) in target.offsets {
-            if let Some(point) = mesh.points.get_mut(point as usize) {
-                (0..3).for_each(|k| point[k] += offset[k] * weight);
+    let painted = Painted::of(evaluator, id);
+    let mut groups = stored(evaluator, id);
+    for (group, targets) in connected(evaluator, id, mesh, input, built) {
+        groups.entry(group).or_default().extend(targets);
+    }
+    for (group, targets) in &groups {
+        let weight = weights.get(*group as usize).copied().unwrap_or(0.0);
+        for (item, share) in shares(targets, weight) {
+            for (point, offset) in &targets[&item] {
+                let factor = share * envelope * painted.at(*group, *point);
+                if let Some(point) = mesh.points.get_mut(*point as usize) {
+                    (0..3).for_each(|k| point[k] += offset[k] * factor);
+                }
             }
         }
     }
+}
+
+/// How much of each target a weight takes: between two neighbours, linearly. Before the first and after the last, the
+/// segment at the end goes on.
+fn shares(targets: &Targets, weight: f64) -> Vec<(u32, f64)> {
+    let at = |item: u32| (f64::from(item) - f64::from(NONE)) / 1000.0;
+    let mut knots: Vec<(f64, Option<u32>)> = targets.keys().map(|item| (at(*item), Some(*item))).collect();
+    knots.retain(|(at, _)| *at != 0.0);
+    knots.push((0.0, None));
+    knots.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(last) = knots.len().checked_sub(2) else { return Vec::new() };
+    let first = knots.partition_point(|(at, _)| *at <= weight).saturating_sub(1).min(last);
+    let [(a, before), (b, after)] = [knots[first], knots[first + 1]];
+    let share = (weight - a) / (b - a);
+    let all = [(before, 1.0 - share), (after, share)];
+    all.into_iter().filter_map(|(item, share)| Some((item?, share))).collect()
+}
+
+/// Weights of single points: of the whole node, and of each target. A point without one has 1.
+#[derive(Default)]
+struct Painted {
+    base: BTreeMap<u32, f64>,
+    targets: BTreeMap<(u32, u32), f64>,
+}
+
+impl Painted {
+    fn of(evaluator: &Evaluator, id: NodeId) -> Self {
+        let mut painted = Self::default();
+        for set in evaluator.scene.assigned(id, &["it", "inputTarget"]) {
+            let last = set.rest.last();
+            let Some((first, _)) = last.range else { continue };
+            let values = (first..).zip(set.values.numbers().filter(|x| x.is_finite()));
+            match (last.name, place(&set).0) {
+                ("bw" | "baseWeights", _) => painted.base.extend(values),
+                ("tw" | "targetWeights", Some(group)) => {
+                    painted.targets.extend(values.map(|(point, x)| ((group, point), x)));
+                }
+                _ => {}
+            }
+        }
+        painted
+    }
+
+    fn at(&self, group: u32, point: u32) -> f64 {
+        let weights = [self.base.get(&point), self.targets.get(&(group, point))];
+        weights.into_iter().flatten().product()
+    }
+}
+
+/// Group and item of a path: `it[0].itg[2].iti[6000]`.
+fn place(set: &Set) -> (Option<u32>, Option<u32>) {
+    let (mut group, mut item) = (None, None);
+    for step in set.rest.segments() {
+        match step.name {
+            "itg" | "inputTargetGroup" => group = step.range.map(|range| range.0),
+            "iti" | "inputTargetItem" => item = step.range.map(|range| range.0),
+            _ => {}
+        }
+    }
+    (group, item)
 }
 
 /// Targets that are meshes of the scene: `it[0].itg[2].iti[6000].igt`.
 fn connected(
     evaluator: &Evaluator,
     id: NodeId,
-    weights: &[f64],
     base: &Poly,
     input: &InputMesh,
     built: &mut Built,
-) -> Vec<(u32, Target)> {
+) -> BTreeMap<u32, Targets> {
     let scene = evaluator.scene;
-    let mut targets = Vec::new();
+    let mut groups: BTreeMap<u32, Targets> = BTreeMap::new();
     for wire in scene.arriving(id) {
         let (mut group, mut item) = (None, None);
         let path = scene.path(wire.to);
@@ -58,21 +125,13 @@ fn connected(
                 _ => {}
             }
         }
-        let (Some((group, _)), true) = (group, matches!(path.last().name, "igt" | "inputGeomTarget")) else {
-            continue;
-        };
-        if item.is_some_and(|(item, _)| item != FULL) {
-            built
-                .omitted
-                .push((scene.name(id).to_owned(), Cause::Operator("an in-between target".to_owned())));
-            continue;
-        }
-        let weight = weights.get(group as usize).copied().unwrap_or(0.0);
+        let is_target = matches!(path.last().name, "igt" | "inputGeomTarget");
+        let (Some((group, _)), Some((item, _)), true) = (group, item, is_target) else { continue };
         match input(wire.from, built) {
             Ok(target) if target.points.len() == base.points.len() => {
                 let offset = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|k| b[k] - a[k]);
                 let pairs = base.points.iter().zip(&target.points).map(offset);
-                targets.push((group, Target { weight, offsets: (0..).zip(pairs).collect() }));
+                groups.entry(group).or_default().insert(item, (0..).zip(pairs).collect());
             }
             Ok(_) => {
                 let what = "a target with another number of points".to_owned();
@@ -81,39 +140,46 @@ fn connected(
             Err(why) => built.omitted.push((scene.name(id).to_owned(), Cause::Mesh(why))),
         }
     }
-    targets
+    groups
 }
 
 /// Targets whose offsets the file stores: `ipt` are the offsets of the points that `ict` lists.
-fn stored(evaluator: &Evaluator, id: NodeId, weights: &[f64]) -> Vec<(u32, Target)> {
+fn stored(evaluator: &Evaluator, id: NodeId) -> BTreeMap<u32, Targets> {
     let scene = evaluator.scene;
-    let mut found: Vec<(u32, Vec<f64>, Components)> = Vec::new();
+    let mut found: BTreeMap<(u32, u32), (Vec<f64>, Components)> = BTreeMap::new();
     for set in scene.assigned(id, &["it", "inputTarget"]) {
-        let (mut group, mut item) = (None, None);
-        for step in set.rest.segments() {
-            match step.name {
-                "itg" | "inputTargetGroup" => group = step.range,
-                "iti" | "inputTargetItem" => item = step.range,
-                _ => {}
-            }
-        }
-        let (Some((group, _)), Some((FULL, _))) = (group, item) else { continue };
-        let at = found.iter().position(|(own, ..)| *own == group).unwrap_or_else(|| {
-            found.push((group, Vec::new(), Components::default()));
-            found.len() - 1
-        });
+        let (Some(group), Some(item)) = place(&set) else { continue };
+        let (points, list) = found.entry((group, item)).or_default();
         match set.rest.last().name {
             // A point array has four numbers for each point.
-            "ipt" | "inputPointsTarget" => found[at].1 = set.values.counted(4).unwrap_or_default(),
-            "ict" | "inputComponentsTarget" => found[at].2 = Components::of(&set.values),
+            "ipt" | "inputPointsTarget" => *points = set.values.counted(4).unwrap_or_default(),
+            "ict" | "inputComponentsTarget" => *list = Components::of(&set.values),
             _ => {}
         }
     }
-    let target = |(group, points, list): (u32, Vec<f64>, Components)| {
-        let weight = weights.get(group as usize).copied().unwrap_or(0.0);
+    let mut groups: BTreeMap<u32, Targets> = BTreeMap::new();
+    for ((group, item), (points, list)) in found.into_iter().filter(|(_, (points, _))| !points.is_empty()) {
         let numbers = list.numbers("vtx", 1 << 24);
         let offsets = numbers.into_iter().zip(points.chunks_exact(4).map(|p| [p[0], p[1], p[2]])).collect();
-        (group, Target { weight, offsets })
-    };
-    found.into_iter().map(target).collect()
+        groups.entry(group).or_default().insert(item, offsets);
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_weight_takes_its_share_of_the_targets_beside_it() {
+        let targets = |items: &[u32]| items.iter().map(|item| (*item, Vec::new())).collect::<Targets>();
+        assert_eq!(shares(&targets(&[6000]), 0.25), [(6000, 0.25)]);
+        assert_eq!(shares(&targets(&[6000]), 1.5), [(6000, 1.5)]);
+        let both = targets(&[5500, 6000]);
+        assert_eq!(shares(&both, 0.25), [(5500, 0.5)]);
+        assert_eq!(shares(&both, 0.5), [(5500, 1.0), (6000, 0.0)]);
+        assert_eq!(shares(&both, 0.75), [(5500, 0.5), (6000, 0.5)]);
+        assert_eq!(shares(&both, -0.5), [(5500, -1.0)]);
+        assert!(shares(&targets(&[]), 1.0).is_empty());
+    }
 }

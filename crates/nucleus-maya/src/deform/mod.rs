@@ -54,7 +54,13 @@ pub(crate) fn deformed(
     let envelope = evaluator.number_or(id, &["en", "envelope"], frame, 1.0);
     match scene.kind(id) {
         "blendShape" => blend_shape::apply(evaluator, id, frame, envelope, &mut mesh, input, built),
-        "skinCluster" => skin_cluster::apply(evaluator, id, frame, envelope, &mut mesh),
+        "skinCluster" => {
+            let method = scene.stored_or(id, &["skm", "skinningMethod"], 0.0);
+            if method != 0.0 {
+                built.omitted.push((scene.name(id).to_owned(), Cause::Skinning));
+            }
+            skin_cluster::apply(evaluator, id, frame, envelope, &mut mesh);
+        }
         "tweak" => tweak(evaluator, id, &mut mesh),
         kind => built.omitted.push((scene.name(id).to_owned(), Cause::Operator(kind.to_owned()))),
     }

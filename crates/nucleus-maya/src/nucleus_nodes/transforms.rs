@@ -1,8 +1,8 @@
 //! Transforms of Maya as Nucleus transforms, which have no pivots: the same placement at every frame, with the same keys.
 //!
 //! A point goes through `-sp S Sh sp spt -rp RA R rp rpt T` in Maya (for joints `S RA R JO T`), and through `S R T` in
-//! ours. Fixed turns and scales fold pivots into the translation. Where they are animated, the transform becomes a chain
-//! of up to three.
+//! ours. Fixed turns and scales fold pivots into the translation. Where they are animated, the transform becomes a chain:
+//! orientation, rotation, axis, shear, scale.
 
 use nucleus_graph::animation::{Curve, Key};
 use nucleus_graph::attributes::{Attribute, Choice, Value, transform};
@@ -86,10 +86,6 @@ impl Importer<'_> {
             self.place_folded(from, to, parent, &parts);
             return;
         }
-        if !is_zero(&[shear]) {
-            let why = "its shear is left out where its rotation or scale is animated".to_owned();
-            self.omissions.add(scene.name(from), Cause::Approximate(why));
-        }
         let [rp, rpt, sp, spt] = if is_joint { [[0.0; 3]; 4] } else { [rp, rpt, sp, spt] };
         let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
         let minus = |a: [f64; 3]| a.map(|x| -x);
@@ -113,7 +109,13 @@ impl Importer<'_> {
             self.hang(inner, Some(turn));
             self.set_channels(inner, &transform::ROTATE.row, fixed(axis), 0.0);
         }
-        let between = add(add(sp, spt), minus(rp));
+        let mut between = add(add(sp, spt), minus(rp));
+        if !is_zero(&[shear]) {
+            let sheared = self.add_transform(to, "shear");
+            self.hang(sheared, Some(inner));
+            let matrix = Matrix::shearing(shear).then(&Matrix::translation(between));
+            (inner, between) = (self.set_matrix(sheared, &matrix, "shear2"), [0.0; 3]);
+        }
         let scale = if sp == [0.0; 3] { to } else { self.add_transform(to, "scale") };
         self.hang(scale, Some(inner));
         self.set_channels(scale, &transform::TRANSLATE.row, fixed(between), 0.0);
@@ -273,22 +275,21 @@ impl Importer<'_> {
     }
 
     fn refuse_animated_pivots(&mut self, from: NodeId) {
-        let pivots = [
+        let vectors = [
             names::ROTATE_PIVOT,
             names::SCALE_PIVOT,
             names::ROTATE_PIVOT_TRANSLATE,
             names::SCALE_PIVOT_TRANSLATE,
+            names::SHEAR,
         ];
-        let driven = |vector: &crate::scene::Vector3| {
-            vector
-                .parts
-                .iter()
-                .chain(std::iter::once(&vector.whole))
-                .any(|n| self.scene.source(from, n, None).is_some())
+        let is_driven = |vector: &crate::scene::Vector3| {
+            let mut all = vector.parts.iter().chain(std::iter::once(&vector.whole));
+            all.any(|names| self.scene.source(from, names, None).is_some())
         };
-        if pivots.iter().any(driven) {
-            let what = format!("{}.rotatePivot", self.scene.name(from));
-            self.omissions.add(what, Cause::Driven("curve or a node; pivots stay where they are".to_owned()));
+        for vector in vectors.into_iter().filter(is_driven) {
+            let what = format!("{}.{}", self.scene.name(from), vector.whole[1]);
+            let why = "curve or a node; pivots and shear stay as they are".to_owned();
+            self.omissions.add(what, Cause::Driven(why));
         }
     }
 }
