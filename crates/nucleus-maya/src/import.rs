@@ -69,7 +69,8 @@ pub fn import_text(
     };
     let mut omissions = std::mem::take(&mut maya.omissions);
     let refused = |message: String| ImportError::Refused { file: path.clone(), message };
-    let carried = Importer::new(&maya, own.is_some(), BorrowedOptions::of(options)).run().map_err(refused)?;
+    let options = BorrowedOptions::of(options, ron);
+    let carried = Importer::new(&maya, own.is_some(), options).run().map_err(refused)?;
     omissions.extend(carried.omissions);
     let [start, end] = carried.frames;
     let source = Source::new(ron);

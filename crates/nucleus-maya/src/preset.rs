@@ -50,7 +50,7 @@ pub fn read_maya_preset(path: &Path) -> Result<(Preset, Omissions), ImportError>
     let scene = MayaScene::of_text(SourceText { path: path.to_owned(), text })?;
     let mut options = ImportOptions::new("", |_, _| Ok(()));
     let (settings, omissions) =
-        Importer::new(&scene, false, BorrowedOptions::of(&mut options)).lone_node(node_type);
+        Importer::new(&scene, false, BorrowedOptions::of(&mut options, Path::new(""))).lone_node(node_type);
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let doc = format!("{name}, from a preset of Maya.");
     Ok((Preset { name, doc, node_type, settings }, omissions))

@@ -288,3 +288,31 @@ fn constraints_by_meaning_are_carried_over_beside_others() {
     let again = imported(&text).scene;
     assert!(again == scene, "{}", write_scene(&again));
 }
+
+#[test]
+fn a_mesh_whose_file_is_elsewhere_is_taken_from_the_maya_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 2\nf 1 2 3\n").unwrap();
+    let ron =
+        "Scene(time: (start: 1, end: 10, fps: 24), nodes: {\"n\": nucleus(), \"m\": mesh(file: \"m.obj\"),
+        \"c\": nCloth(inputMesh: \"m\")})";
+    let (scene, _) = read_scene_text(ron, &folder.path().join("s.ron")).unwrap();
+    let (text, _) = maya_ascii(&scene, "s").unwrap();
+    let import = |target: &Path| {
+        let mut files = Vec::new();
+        let mut options = ImportOptions::new("meshes", |name, text| {
+            files.push((name.to_owned(), text));
+            Ok(())
+        });
+        let source = SourceText::from_bytes(Path::new("s.ma"), text.clone().into_bytes()).unwrap();
+        let read = import_text(source, target, &mut options).unwrap();
+        drop(options);
+        (write_scene(&read.scene), files, read.omissions.to_string())
+    };
+    let (beside, files, _) = import(&folder.path().join("s.ron"));
+    assert!(beside.contains("file: \"m.obj\"") && files.is_empty(), "{beside}");
+    let (elsewhere, files, omissions) = import(&folder.path().join("other/s.ron"));
+    assert!(elsewhere.contains("file: \"meshes/m.obj\""), "{elsewhere}");
+    assert!(files[0].1.contains("v 0 0 2\n"), "{files:?}");
+    assert!(omissions.contains("`m.obj` is not there"), "{omissions}");
+}

@@ -26,7 +26,7 @@ impl Importer<'_> {
             && let Some(file) = scene.string(id, &[mesh::FILE.row.name])
             && scene.node(id).added.iter().any(|(long, _)| **long == *mesh::FILE.row.name)
         {
-            return Plan::File(file);
+            return self.own_mesh(id, file);
         }
         if let Some(plan) = self.own_primitive(id) {
             return plan;
@@ -44,6 +44,22 @@ impl Importer<'_> {
             Ok(built) if built.mesh.face_count() == 0 => Plan::Missing("it has no face".to_owned()),
             Ok(built) => Plan::Built(built),
             Err(why) => Plan::Missing(why),
+        }
+    }
+
+    /// The mesh file of a Nucleus scene; where it is not beside the new scene, the mesh in the Maya scene.
+    fn own_mesh(&self, id: NodeId, file: String) -> Plan {
+        // Of files for each frame, the first that is needed.
+        let first = match file.matches('#').count() {
+            0 => file.clone(),
+            digits => file.replacen(&"#".repeat(digits), &format!("{:0digits$}", self.frames[0]), 1),
+        };
+        if self.options.target.join(first).is_file() {
+            return Plan::File(file);
+        }
+        match crate::mesh::embedded::stored(self.scene, id) {
+            Ok(Some(mesh)) if mesh.face_count() > 0 => Plan::Embedded(mesh, file),
+            _ => Plan::File(file),
         }
     }
 
@@ -98,6 +114,12 @@ impl Importer<'_> {
                 for (what, cause) in built.omitted {
                     self.omissions.add(what, cause);
                 }
+                self.set(to, row, file(name));
+            }
+            Plan::Embedded(mesh, missing) => {
+                let name = format!("{stem}.obj");
+                (self.options.write)(&name, obj_text(&mesh))?;
+                self.omissions.add(self.graph.node(to).name(), Cause::NoMeshFile(missing));
                 self.set(to, row, file(name));
             }
             Plan::Missing(_) => {}

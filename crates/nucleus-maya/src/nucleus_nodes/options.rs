@@ -1,6 +1,6 @@
 //! Options of an import.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Writes a file: its name, and its text. The error is a message.
 pub type WriteFile<'a> = dyn FnMut(&str, String) -> Result<(), String> + 'a;
@@ -38,12 +38,16 @@ pub(crate) struct BorrowedOptions<'s> {
     pub(super) folder: &'s str,
     pub(super) physical: bool,
     pub(super) simulate: bool,
+    /// The folder of our scene file.
+    pub(super) target: PathBuf,
     pub(super) write: &'s mut WriteFile<'s>,
 }
 
 impl<'s> BorrowedOptions<'s> {
-    pub(crate) fn of(options: &'s mut ImportOptions<'_>) -> Self {
+    /// For a scene file that will be `ron`.
+    pub(crate) fn of(options: &'s mut ImportOptions<'_>, ron: &Path) -> Self {
         let ImportOptions { meshes, folder, physical, simulate, write } = options;
-        Self { meshes, folder, physical: *physical, simulate: *simulate, write: &mut **write }
+        let target = ron.parent().unwrap_or(Path::new("")).to_owned();
+        Self { meshes, folder, physical: *physical, simulate: *simulate, target, write: &mut **write }
     }
 }

@@ -2,7 +2,7 @@
 
 use nucleus_graph::attributes::NodeType;
 
-use crate::mesh::Built;
+use crate::mesh::{Built, Poly};
 use crate::scene::{MayaScene, NodeId};
 
 /// How a mesh is imported.
@@ -11,6 +11,8 @@ pub(super) enum Plan {
     Primitive(NodeId, &'static NodeType),
     /// The file that a Nucleus scene names.
     File(String),
+    /// The mesh in the Maya scene, since the file that a Nucleus scene names is not there.
+    Embedded(Poly, String),
     /// The text of an OBJ file that the artist gives.
     Given(String),
     /// The mesh at the first frame, which may change over time.
@@ -26,6 +28,7 @@ impl Plan {
             Self::Primitive(source, _) => {
                 usize::try_from(crate::mesh::own_primitive(scene, *source)?.size().points).ok()
             }
+            Self::Embedded(mesh, _) => Some(mesh.points.len()),
             Self::Built(built) => Some(built.mesh.points.len()),
             Self::Given(text) => Some(text.lines().filter(|line| line.starts_with("v ")).count()),
             Self::File(_) | Self::Missing(_) => None,
