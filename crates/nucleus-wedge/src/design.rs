@@ -176,18 +176,21 @@ impl Design {
 }
 
 /// Reads a table of runs: a line of headings (`cloth1.damp,nucleus1.windSpeed`), then a line per run. Values that contain
-/// commas are in brackets or quotes, as in scenes. Blank lines and lines that begin with `#` are skipped.
+/// commas are in brackets or quotes, as in scenes, or in the quotes of a CSV file (RFC 4180), as spreadsheets and
+/// `wedge.csv` have them. A byte order mark, blank lines and lines that begin with `#` are skipped.
 ///
 /// # Errors
 /// When a line has another number of values than the headings, or a value does not fit the scene.
 pub fn read_table(text: &str, graph: &Graph) -> Result<(Vec<String>, Vec<Row>), DesignError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let refused = |line, message| DesignError::Table { line, message };
     let Some((line, head)) = lines.next() else {
         return Err(refused(1, "the table is empty; its first line names the attributes".to_owned()));
     };
-    let mut columns: Vec<String> = head.split(',').map(|name| name.trim().to_owned()).collect();
+    let names = head.split(',').map(|name| name.trim().trim_matches('"').to_owned());
+    let mut columns: Vec<String> = names.collect();
     if columns.iter().collect::<BTreeSet<_>>().len() < columns.len() {
         return Err(refused(line, "an attribute is named twice".to_owned()));
     }
@@ -202,7 +205,8 @@ pub fn read_table(text: &str, graph: &Graph) -> Result<(Vec<String>, Vec<Row>), 
                 format!("{found} values, but the first line names {expected} attributes"),
             ));
         }
-        for (column, value) in columns.iter_mut().zip(parts) {
+        for (column, part) in columns.iter_mut().zip(parts) {
+            let value = unquoted(part, |value| fits(column, value, graph));
             // The same value of an attribute is checked once.
             if checked.insert((column.clone(), value.clone())) {
                 let mut axis: Axis = format!("{column}=0")
@@ -220,6 +224,22 @@ pub fn read_table(text: &str, graph: &Graph) -> Result<(Vec<String>, Vec<Row>), 
         return Err(refused(line, "the table has no runs; each further line is one".to_owned()));
     }
     Ok((columns, rows))
+}
+
+/// Whether an attribute takes a value.
+fn fits(column: &str, value: &str, graph: &Graph) -> bool {
+    let axis = format!("{column}=0").parse::<Axis>().ok();
+    axis.is_some_and(|mut axis| {
+        axis.values = Values::List(vec![value.to_owned()]);
+        axis.resolve(graph).is_ok()
+    })
+}
+
+/// A cell without the quotes of a CSV file. A text keeps its own quotes, which are part of the syntax of scenes.
+fn unquoted(part: String, fits: impl Fn(&str) -> bool) -> String {
+    let inner = part.strip_prefix('"').and_then(|part| part.strip_suffix('"'));
+    let Some(inner) = inner.map(|inner| inner.replace("\"\"", "\"")) else { return part };
+    if fits(&part) || !fits(inner.trim()) { part } else { inner.trim().to_owned() }
 }
 
 #[cfg(test)]
@@ -276,6 +296,12 @@ mod tests {
             read("# mine\nc.bnd, n.windDirection\n0.1, (1, 0, 0)\n\n2, (0, 1, 0)\n").unwrap();
         assert_eq!(columns, ["c.bendResistance", "n.windDirection"]);
         assert_eq!(rows[1].values, ["2", "(0, 1, 0)"]);
+        // As a spreadsheet writes it.
+        let (columns, rows) =
+            read("\u{feff}\"c.bnd\",n.windDirection\r\n0.1,\"(1, 0, 0)\"\r\n\"2\",\"(0, 1, 0)\"\r\n")
+                .unwrap();
+        assert_eq!(columns, ["c.bendResistance", "n.windDirection"]);
+        assert_eq!((rows[0].values[1].as_str(), rows[1].values[0].as_str()), ("(1, 0, 0)", "2"));
         let refusals = [
             ("", "line 1: the table is empty"),
             ("c.damp", "line 1: the table has no runs"),
