@@ -283,6 +283,66 @@ fn a_usd_stage_is_posed_by_its_skeleton_its_blend_shapes_and_its_point_cache() {
 }
 
 #[test]
+fn a_mirror_turns_the_faces_of_a_gltf() {
+    let folder = tempfile::tempdir().unwrap();
+    for (scale, face) in [("1, 1, 1", [0, 1, 2]), ("-1, 1, 1", [0, 2, 1]), ("-1, 1, -2", [0, 1, 2])] {
+        let mut binary = Binary::default();
+        let positions = binary.floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], "VEC3", 3);
+        let document = format!(
+            r#""scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0, "scale": [{scale}]}}],
+               "meshes": [{{"primitives": [{{"attributes": {{"POSITION": {positions}}}}}]}}]"#
+        );
+        binary.write(folder.path(), &document);
+        let mesh = MeshFile::open(folder.path().join("a.gltf"), "", FRAMES).unwrap().mesh(1).unwrap();
+        assert_eq!(mesh.surface.faces.face(0), face, "{scale}");
+    }
+}
+
+/// The faces and the number of points of a stage, or why it is refused.
+fn faces_of(stage: &str, object: &str) -> Result<(Vec<Vec<u32>>, usize), String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.usda");
+    fs::write(&path, format!("#usda 1.0\n{stage}")).unwrap();
+    let mesh = MeshFile::open(&path, object, FRAMES)
+        .and_then(|file| file.mesh(1))
+        .map_err(|error| error.to_string())?;
+    let faces = mesh.surface.faces.iter().map(<[u32]>::to_vec).collect();
+    Ok((faces, mesh.surface.positions.len()))
+}
+
+/// A mesh of two triangles.
+const PAIR: &str = "int[] faceVertexCounts = [3, 3]\nint[] faceVertexIndices = [0, 1, 2, 0, 2, 3]\n\
+                    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]\n";
+
+#[test]
+fn mirrors_holes_and_invisible_meshes_of_a_usd_stage_are_read() {
+    let mirror = "double3 xformOp:scale = (1, -1, 1)\nuniform token[] xformOpOrder = [\"xformOp:scale\"]\n";
+    let faces = |own: &str| faces_of(&format!("def Mesh \"a\" {{\n{PAIR}{own}}}\n"), "").unwrap().0;
+    let turned = [[2, 1, 0], [3, 2, 0]];
+    assert_eq!(faces(""), [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(faces(mirror), turned);
+    let left = "uniform token orientation = \"leftHanded\"\n";
+    assert_eq!(faces(left), turned);
+    assert_eq!(faces(&format!("{mirror}{left}")), [[0, 1, 2], [0, 2, 3]], "both cancel");
+    assert_eq!(faces("int[] holeIndices = [0]\n"), [[0, 2, 3]]);
+    let hidden = "def Xform \"g\" {\ntoken visibility = \"invisible\"\n";
+    let both = format!("def Mesh \"a\" {{\n{PAIR}}}\n{hidden}def Mesh \"b\" {{\n{PAIR}}}\n}}\n");
+    assert_eq!(faces_of(&both, "").unwrap().1, 4);
+}
+
+#[test]
+fn a_point_instancer_is_refused_unless_other_prims_are_named() {
+    let stage = format!(
+        "def Mesh \"ground\" {{\n{PAIR}}}\ndef PointInstancer \"trees\" {{\nrel prototypes = [</trees/tree>]\n\
+         int[] protoIndices = [0, 0]\npoint3f[] positions = [(5, 0, 0), (9, 0, 0)]\ndef Mesh \"tree\" {{\n{PAIR}}}\n}}\n"
+    );
+    let refused = faces_of(&stage, "").unwrap_err();
+    assert!(refused.contains("PointInstancer") && refused.contains("`object`"), "{refused}");
+    assert_eq!(faces_of(&stage, "ground").unwrap().1, 4);
+    assert_eq!(faces_of(&stage, "/trees/tree").unwrap().1, 4);
+}
+
+#[test]
 fn malformed_files_are_refused_without_their_content() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |name: &str, text: &str| {

@@ -181,9 +181,10 @@ impl Source for GltfFile {
     fn faces(&self, _frame: i64) -> Result<(Faces, Option<CornerUvs>), Fault> {
         let (mut faces, mut first) = (Faces::default(), 0);
         let mut uvs: Option<CornerUvs> = Some(CornerUvs::default());
-        for (_, primitive) in self.primitives() {
+        let worlds = self.worlds(&self.poses(0.0));
+        for (node, primitive) in self.primitives() {
             let count = primitive.get(&Semantic::Positions).map_or(0, |accessor| accessor.count());
-            let indices: Vec<u32> = match primitive.indices() {
+            let mut indices: Vec<u32> = match primitive.indices() {
                 Some(accessor) => {
                     self.buffers.numbers(&accessor)?.into_iter().map(|index| index as u32).collect()
                 }
@@ -191,6 +192,10 @@ impl Source for GltfFile {
             };
             if indices.iter().any(|index| *index as usize >= count) {
                 return Err("a triangle refers to a vertex that does not exist".into());
+            }
+            // A mirror turns the winding of triangles (glTF 2.0, §3.7.4).
+            if node.skin().is_none() && worlds[node.index()].determinant() < 0.0 {
+                indices.chunks_exact_mut(3).for_each(|corners| corners.swap(1, 2));
             }
             for corners in indices.chunks_exact(3) {
                 faces.push(&[first + corners[0], first + corners[1], first + corners[2]]);

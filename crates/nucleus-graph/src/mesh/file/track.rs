@@ -60,11 +60,13 @@ impl Track {
         Some([turn.i, turn.j, turn.k, turn.w])
     }
 
-    /// The keys before and after a time, and its share of the way between them.
+    /// The keys before and after a time, and its share of the way between them. A key holds from its own time on; files
+    /// store times as `f32`, so that a key at a frame may lie a rounding error behind it.
     fn place(&self, time: f64) -> (usize, usize, f64) {
         let last = self.times.len() - 1;
-        let after = self.times.partition_point(|key| *key <= time).min(last);
-        let before = if self.times[after] <= time { after } else { after.saturating_sub(1) };
+        let reached = time + 4.0 * f64::from(f32::EPSILON) * time.abs().max(1.0);
+        let after = self.times.partition_point(|key| *key <= reached).min(last);
+        let before = if self.times[after] <= reached { after } else { after.saturating_sub(1) };
         let length = self.times[after] - self.times[before];
         let share = if length > 0.0 { ((time - self.times[before]) / length).clamp(0.0, 1.0) } else { 0.0 };
         (before, after, share)
@@ -94,6 +96,18 @@ mod tests {
         let track = Track::new(vec![0.0, 2.0], values, Interpolation::CubicSpline).unwrap();
         for time in [0.0, 0.5, 1.0, 1.7, 2.0] {
             assert!((track.at(time)[0] - time * time * time).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_stepped_key_takes_effect_at_its_frame() {
+        for fps in [24.0, 25.0, 30.0] {
+            let times = (0..200).map(|frame| f64::from(frame as f32 / fps as f32)).collect();
+            let track = Track::new(times, (0..200).map(f64::from).collect(), Interpolation::Step).unwrap();
+            for frame in 0..200 {
+                assert_eq!(track.at(f64::from(frame) / fps), [f64::from(frame)]);
+                assert_eq!(track.at((f64::from(frame) + 0.99) / fps), [f64::from(frame)]);
+            }
         }
     }
 

@@ -27,6 +27,8 @@ pub(super) struct UsdFile {
     meshes: Vec<MeshPrim>,
     /// Time codes for each frame of the scene.
     codes_per_frame: f64,
+    /// The first frame of the scene.
+    first: i64,
     metres_per_unit: Option<f64>,
     is_z_up: bool,
     moves: bool,
@@ -79,6 +81,11 @@ impl UsdFile {
         let mut meshes = Vec::new();
         for path in paths.into_iter().filter(|path| is_in(path.as_str(), object)) {
             let prim = stage.prim(path);
+            if prim.type_name()?.as_deref() == Some("PointInstancer") && is_drawn(&prim)? {
+                return Ok(Err("it has a PointInstancer, whose instances are not read: make them meshes, or name the prims \
+                               to read with `object`"
+                    .to_owned()));
+            }
             if prim.type_name()?.as_deref() == Some("Mesh") && is_drawn(&prim)? {
                 meshes.push(match MeshPrim::read(&stage, prim)? {
                     Ok(mesh) => mesh,
@@ -100,6 +107,7 @@ impl UsdFile {
         let rate = Some(stage.time_codes_per_second()).filter(|rate| *rate > 0.0 && rate.is_finite());
         let mut file = Self {
             codes_per_frame: rate.unwrap_or(24.0) / frames.fps,
+            first: frames.first,
             meshes,
             metres_per_unit,
             is_z_up,
@@ -137,13 +145,15 @@ impl UsdFile {
             let counts = mesh.ints("faceVertexCounts", time)?;
             let indices = mesh.ints("faceVertexIndices", time)?;
             let (mut own, mut begin, mut order) = (Vec::new(), 0, Vec::new());
-            for count in counts {
+            let holes = mesh.ints("holeIndices", time)?;
+            let reversed = mesh.is_clockwise(self.time(self.first))?;
+            for (face, count) in (0..).zip(counts) {
                 let end = usize::try_from(count).ok().and_then(|count| count.checked_add(begin));
                 let Some(corners) = end.and_then(|end| indices.get(begin..end)) else { return Ok(None) };
                 let places = begin..begin + corners.len();
                 begin = places.end;
-                // A face of one or two corners has no area.
-                if corners.len() < 3 {
+                // A face of one or two corners has no area, and a hole is no surface.
+                if corners.len() < 3 || holes.contains(&face) {
                     continue;
                 }
                 own.clear();
@@ -153,7 +163,6 @@ impl UsdFile {
                         None => return Ok(None),
                     }
                 }
-                let reversed = mesh.is_left_handed;
                 if reversed {
                     own.reverse();
                     order.extend(places.rev());
@@ -217,11 +226,15 @@ fn is_in(path: &str, object: &str) -> bool {
     object.is_empty() || format!("{path}/").contains(&format!("/{}/", object.trim_matches('/')))
 }
 
-/// Whether a prim is no proxy and no guide.
+/// Whether a prim is visible, and no proxy and no guide.
 fn is_drawn(prim: &Prim) -> anyhow::Result<bool> {
     for AnyPrim(prim) in chain(prim) {
         let purpose = prim.attribute("purpose").get::<Value>()?;
         if matches!(purpose, Some(Value::Token(purpose)) if ["proxy", "guide"].contains(&purpose.as_str())) {
+            return Ok(false);
+        }
+        let visibility = prim.attribute("visibility").get::<Value>()?;
+        if matches!(visibility, Some(Value::Token(word)) if word.as_str() == "invisible") {
             return Ok(false);
         }
     }

@@ -18,7 +18,7 @@ pub(super) struct MeshPrim {
     prim: Prim,
     /// From the root to the mesh.
     chain: Vec<AnyPrim>,
-    pub(super) is_left_handed: bool,
+    is_left_handed: bool,
     shapes: Vec<Shape>,
     animation: Option<SkelAnimQuery>,
     skin: Option<Skin>,
@@ -212,6 +212,12 @@ impl MeshPrim {
         };
         let found: Option<Vec<u32>> = (0..corners.len()).map(at).collect();
         Ok(found.map(|found| (values, found)))
+    }
+
+    /// Whether its front is where its corners run clockwise: it is left-handed, or mirrored by its transform.
+    pub(super) fn is_clockwise(&self, time: TimeCode) -> anyhow::Result<bool> {
+        let chain = self.skin.as_ref().map_or(&self.chain, |skin| &skin.chain);
+        Ok(self.is_left_handed != (world(chain, time)?.determinant() < 0.0))
     }
 
     /// Its points in the world: blend shapes, then the skin or its transform.
