@@ -7,8 +7,11 @@ use proptest::prelude::*;
 use super::*;
 use crate::Simulation;
 use crate::animation::{Curve, Infinity, Key, Tangent};
-use crate::attributes::{Attribute, ColorPoint, Kind, Painting, RampPoint, Range, Value};
+use crate::attributes::{
+    Attribute, ColorPoint, Kind, Painting, RampPoint, Range, Value, dynamic_constraint, nucleus,
+};
 use crate::compile::{Program, compile};
+use crate::graph::Plug;
 
 /// Any finite number of a range.
 fn numbers(range: Range) -> BoxedStrategy<f64> {
@@ -315,4 +318,24 @@ fn the_forms_of_record_are_read_and_written() {
             format!("Scene(time: (start: 1, end: 2, fps: 24), record: {text}, nodes: {{\"n\": nucleus()}})");
         assert!(read_scene_text(&scene, Path::new("a.ron")).is_err(), "{text}");
     }
+}
+
+#[test]
+fn a_constraint_at_another_index_of_its_nucleus_is_written_connection_by_connection() {
+    let text = r#"Scene(time: (start: 1, end: 2, fps: 24), nodes: {
+        "n": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p"),
+        "k": dynamicConstraint(components: ["c.vtx[0]"]),
+    })"#;
+    let mut read = scene(text);
+    let [n, k] = ["n", "k"].map(|name| read.graph.find(name).unwrap());
+    let current = Plug::element(k, &dynamic_constraint::EVAL_CURRENT, 0);
+    let input = |index| Plug::element(n, &nucleus::INPUT_CURRENT, index);
+    assert!(read.graph.disconnect(current, input(0)));
+    read.graph.connect(current, input(3)).unwrap();
+    let written = write_scene(&read);
+    assert!(
+        !written.contains("components"),
+        "reading the list would connect the constraint again: {written}"
+    );
+    assert_eq!(write_scene(&scene(&written)), written);
 }
