@@ -194,6 +194,14 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         &self.samples
     }
 
+    /// The first sample that does not follow the one before at the distance of the first two; `None` if all do.
+    pub(crate) fn uneven_sample(&self) -> Option<&Sample> {
+        let step = |pair: &[Sample]| pair[1].frame_time - pair[0].frame_time;
+        let first = self.samples.windows(2).next().map(step)?;
+        let uneven = self.samples.windows(2).find(|pair| (step(pair) - first).abs() > 1e-6)?;
+        Some(&uneven[1])
+    }
+
     /// Frames per second.
     pub fn fps(&self) -> f64 {
         self.cache.run().frames_per_second

@@ -73,6 +73,17 @@ pub enum ExportError {
         /// The format.
         format: &'static str,
     },
+    /// Samples at uneven times, and the format states one rate.
+    #[error(
+        "the samples up to frame {frame} are not evenly spaced in time, and {format} states one rate; select frames with \
+         `--frames` and `--every`, or write mdd, which stores the time of each sample"
+    )]
+    Uneven {
+        /// The frame of the first sample that is not where the rate puts it.
+        frame: i32,
+        /// The format.
+        format: &'static str,
+    },
     /// Surfaces of liquids change their topology from frame to frame.
     #[error("{format} cannot hold surfaces of liquids; write obj or ply")]
     NoSurface {

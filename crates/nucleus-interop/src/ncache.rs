@@ -96,11 +96,13 @@ fn description<R: Read + Seek>(clip: &Clip<R>, channels: &[Channel], width: Widt
     let samples = clip.samples();
     let [first, last] =
         [samples[0], samples[samples.len() - 1]].map(|sample| ticks(sample.frame_time, clip.fps()));
-    let rate = if samples.len() > 1 { (last - first) / (samples.len() as i32 - 1) } else { per_frame };
+    let steps = samples.windows(2).map(|pair| ticks(pair[1].frame_time - pair[0].frame_time, clip.fps()));
+    let rate = steps.min().unwrap_or(per_frame);
+    let sampling = if clip.uneven_sample().is_some() { "Irregular" } else { "Regular" };
     let lines = channels.iter().enumerate().map(|(index, (name, holds, kind))| {
         format!(
             "    <channel{index} ChannelName=\"{name}\" ChannelType=\"{holds}\" ChannelInterpretation=\"{kind}\" \
-             SamplingType=\"Regular\" SamplingRate=\"{rate}\" StartTime=\"{first}\" EndTime=\"{last}\"/>\n"
+             SamplingType=\"{sampling}\" SamplingRate=\"{rate}\" StartTime=\"{first}\" EndTime=\"{last}\"/>\n"
         )
     });
     format!(

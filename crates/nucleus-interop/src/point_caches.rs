@@ -15,6 +15,9 @@ pub(crate) fn write_pc2<R: Read + Seek>(
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
+    if let Some(sample) = clip.uneven_sample() {
+        return Err(ExportError::Uneven { frame: sample.frame, format: "PC2" });
+    }
     let head = |clip: &Clip<R>, points: usize, file: &mut OutFile| {
         file.bytes(b"POINTCACHE2\0");
         let samples = clip.samples();

@@ -138,6 +138,22 @@ fn glb_is_in_metres_and_has_a_morph_target_for_each_frame() {
 }
 
 #[test]
+fn samples_at_uneven_times_are_refused_by_pc2_and_irregular_in_an_ncache() {
+    // Every second frame, with its middle: a step of half a frame follows one of one and a half.
+    let uneven = || Selection { substeps: true, every: 2, ..Selection::default() };
+    let (_folder, out, refused) = try_export(sample::write, Format::Pc2, uneven());
+    let refused = refused.unwrap_err().to_string();
+    assert!(refused.contains("PC2 states one rate") && refused.contains("write mdd"), "{refused}");
+    assert_eq!(fs::read_dir(&out).map_or(0, Iterator::count), 0);
+    let (_folder, out, _) = exported(Format::Mc, uneven());
+    let text = fs::read_to_string(out.join("ns_sheet_1.xml")).unwrap();
+    assert!(text.contains("SamplingType=\"Irregular\" SamplingRate=\"125\""), "{text}");
+    let (_folder, out) = all(Format::Mc);
+    let text = fs::read_to_string(out.join("ns_sheet_1.xml")).unwrap();
+    assert!(text.contains("SamplingType=\"Regular\" SamplingRate=\"250\""), "{text}");
+}
+
+#[test]
 fn usda_states_its_units_and_times_and_keeps_substeps_between_frames() {
     let (_folder, out, _) = exported(Format::Usda, Selection { substeps: true, ..Selection::default() });
     let text = fs::read_to_string(out).unwrap();
