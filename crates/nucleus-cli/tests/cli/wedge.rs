@@ -182,15 +182,35 @@ fn a_plan_of_another_scene_is_not_continued() {
     assert_eq!(wedge(folder.path(), &["--plan"]).status.code(), Some(0));
     let path = folder.path().join("drape.ron");
     let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replace("radius: 20", "radius: 21")).unwrap();
-    assert_refused(
-        &nucleus(folder.path(), &["wedge", "--continue", "--out", "w"]),
-        "has changed since the plan",
-    );
+    let changes = [
+        ("radius: 20", "radius: 21"),
+        ("end: 3", "end: 4"),
+        ("fps: 24", "fps: 25"),
+        ("nodes:", "record: substeps, nodes:"),
+        ("checks: []", "checks: [finite]"),
+    ];
+    for (from, to) in changes {
+        let changed = text.replacen(from, to, 1);
+        assert!(changed != text, "there is no `{from}` in {text}");
+        fs::write(&path, changed).unwrap();
+        for how in [&["--continue"][..], &["--run", "1"]] {
+            let output = nucleus(folder.path(), &[&["wedge", "--out", "w"], how].concat());
+            assert_refused(&output, "has changed since the plan");
+        }
+    }
     fs::write(&path, text).unwrap();
     let other = ["wedge", "drape.ron", "--vary", "cloth1.damp=0,1", "--continue", "--out", "w"];
     assert_refused(&nucleus(folder.path(), &other), "has other runs");
     assert_eq!(wedge(folder.path(), &["--continue"]).status.code(), Some(0));
+}
+
+#[test]
+fn a_plan_of_some_frames_is_continued_without_naming_them_again() {
+    let folder = folder();
+    scene(folder.path(), 9, "");
+    assert_eq!(wedge(folder.path(), &["--frames", "2", "--plan"]).status.code(), Some(0));
+    let output = nucleus(folder.path(), &["wedge", "--continue", "--out", "w"]);
+    assert!(stdout(&output).contains("4 runs: 4 success"), "{}{}", stdout(&output), stderr(&output));
 }
 
 /// Virtual memory, of which the memory in use is a part.

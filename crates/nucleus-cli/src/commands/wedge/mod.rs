@@ -1,7 +1,6 @@
 //! `nucleus wedge`: many runs of a scene with different values, on this machine or on a farm.
 
 use anyhow::{Result, anyhow, bail, ensure};
-use nucleus_graph::compile::Program;
 use nucleus_wedge::collect::{Collected, collect};
 use nucleus_wedge::{Plan, WedgeFolder, parse_selection};
 use serde_json::json;
@@ -9,7 +8,6 @@ use serde_json::json;
 use crate::options::thread_count;
 use crate::output::say;
 use crate::process::Outcome;
-use crate::recording::fingerprint;
 use crate::runs::{Place, execute};
 use crate::{files, output, process};
 
@@ -97,12 +95,12 @@ impl Wedge {
             }
             None => {
                 let plan = folder.read_plan()?;
-                if !self.collect && self.run.is_none() {
-                    ensure!(
-                        self.continues,
-                        "`{}` holds a plan: finish it with `--continue`, or collect it with `--collect`",
-                        self.out.display()
-                    );
+                ensure!(
+                    self.collect || self.continues || self.run.is_some(),
+                    "`{}` holds a plan: finish it with `--continue`, or collect it with `--collect`",
+                    self.out.display()
+                );
+                if !self.collect {
                     check_scene(&plan)?;
                 }
                 Ok(Some(plan))
@@ -164,7 +162,7 @@ impl Wedge {
     }
 }
 
-/// Refuses to continue a plan whose scene, or a file that it reads, has changed since.
+/// Refuses runs of a plan whose scene, or a file that it reads, has changed since.
 fn check_scene(plan: &Plan) -> Result<()> {
     if plan.header.fingerprint.is_empty() {
         return Ok(());
@@ -175,14 +173,10 @@ fn check_scene(plan: &Plan) -> Result<()> {
         bail!("`{}` has errors now; `nucleus check` lists them", path.display())
     };
     ensure!(
-        is_same(plan, program),
+        plan.header.fingerprint == planning::fingerprint(&opened.text, &path, program),
         "`{}`, or a mesh or map that it reads, has changed since the plan was made: the other runs would not be comparable; \
          restore the file, or start another wedge",
         path.display()
     );
     Ok(())
-}
-
-fn is_same(plan: &Plan, program: &Program) -> bool {
-    plan.header.fingerprint == fingerprint(program)
 }

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, anyhow};
 use nucleus_graph::attributes::Attribute;
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::{Assignment, Scene, assigned, read_scene_within};
+use nucleus_measure::result_cache::Fingerprint;
 use nucleus_wedge::{Axis, Design, Plan, PlanHeader, PlannedRun, Row, Values, read_table, run_name};
 
 use super::options::Wedge;
@@ -40,11 +41,26 @@ pub fn plan(wedge: &Wedge, scene_path: &Path) -> Result<Option<Plan>> {
     };
     let runs = (0..).zip(rows).map(run).collect();
     let header = PlanHeader {
-        fingerprint: recording::fingerprint(&program),
+        fingerprint: fingerprint(&text, scene_path, &program),
         memory: memory(&program),
         ..PlanHeader::new(title, directory, columns)
     };
     Ok(Some(Plan { header, runs }))
+}
+
+/// A fingerprint of all that a run takes from a scene: nodes with their meshes and maps, time, record and checks as its
+/// text has them.
+pub fn fingerprint(text: &str, path: &Path, program: &Program) -> String {
+    let nodes = recording::fingerprint(program);
+    // `--frames` belongs to the arguments of the runs, so the time is read without it.
+    let rest = match read_scene_within(text, path, files::memory_limit()) {
+        Ok((Scene { time, every, record, checks, .. }, _)) => {
+            let checks: Vec<String> = checks.iter().map(ToString::to_string).collect();
+            format!("{time:?} {every} {record:?} {}", checks.join(" "))
+        }
+        Err(_) => String::new(),
+    };
+    Fingerprint::default().bytes(format!("{nodes} {rest}").as_bytes()).name()
 }
 
 fn memory(program: &Program) -> u64 {
