@@ -1,8 +1,8 @@
 //! PNG textures as factors: 0 for black, 1 for white.
 //!
 //! The factor is the luminance of the stored colour (0.3 red, 0.59 green, 0.11 blue, as in Maya), without gamma
-//! correction. Alpha is ignored. Sampling is bilinear between pixel centres. As in Maya, (0, 0) is the lower left
-//! corner, and the texture repeats outside 0 to 1.
+//! correction. Alpha is ignored. Sampling is bilinear between pixel centres, and a border pixel holds up to its border. As
+//! in Maya, (0, 0) is the lower left corner, and the texture repeats outside 0 to 1.
 
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -98,10 +98,12 @@ impl Texture {
     pub fn at(&self, [u, v]: [f64; 2]) -> f64 {
         let [columns, rows] = self.size;
         let place = |along: f64, count: usize| {
-            let at = along * count as f64 - 0.5;
-            let first = at.floor();
-            let wrap = |k: f64| (k.rem_euclid(count as f64) as usize).min(count - 1);
-            (wrap(first), wrap(first + 1.0), at - first)
+            // 1 is the far border and not the start of the next repetition.
+            let within = if (0.0..=1.0).contains(&along) { along } else { along.rem_euclid(1.0) };
+            // Opposite borders do not blend: what is painted at one would appear at the other.
+            let at = (within * count as f64 - 0.5).clamp(0.0, (count - 1) as f64);
+            let first = at as usize;
+            (first, (first + 1).min(count - 1), at - first as f64)
         };
         let (left, right, across) = place(u, columns);
         let (upper, lower, down) = place(1.0 - v, rows);
@@ -141,8 +143,15 @@ mod tests {
         for whole in [-3.0, 1.0, 7.0] {
             assert_eq!(texture.at([0.25 + whole, 0.75 - whole]), texture.at([0.25, 0.75]));
         }
-        // At the edge, sampling wraps to the other side.
-        assert_eq!(texture.at([0.0, 0.75]), 0.5);
+    }
+
+    #[test]
+    fn coordinates_on_a_border_sample_the_pixels_of_that_border() {
+        let texture = Texture::of(2, vec![0.0, 1.0, 0.25, 0.5]);
+        assert_eq!([[0.0, 1.0], [1.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(|uv| texture.at(uv)), [0.0, 1.0, 0.25, 0.5]);
+        assert_eq!([0.1, 0.9].map(|u| texture.at([u, 0.75])), [0.0, 1.0]);
+        // A repetition begins with the first pixel.
+        assert_eq!(texture.at([1.0 + 1e-9, 0.75]), 0.0);
     }
 
     #[test]
