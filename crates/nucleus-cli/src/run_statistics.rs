@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use nucleus_core::{InvalidInput, StepReport};
 use nucleus_graph::FrameReport;
+use nucleus_graph::checks::measured_gap;
 use serde::{Deserialize, Serialize};
 
 /// The figures of one frame, as a cache stores them and `--json` prints them.
@@ -15,7 +16,7 @@ pub struct FrameStatistics {
     /// See [`StepReport`] for this field and the following ones.
     pub max_strain: f64,
     pub strain_99: f64,
-    /// `None` if no contact is near: JSON has no infinity.
+    /// At most 1, see [`measured_gap`]. `None` if no collider is near: JSON has no infinity.
     pub min_gap: Option<f64>,
     /// The same for cloth-cloth contacts.
     pub min_cloth_gap: Option<f64>,
@@ -89,6 +90,7 @@ impl FrameStatistics {
             ..
         } = *report;
         let [min_gap, min_cloth_gap] = [min_gap, min_cloth_gap].map(|gap| gap.is_finite().then_some(gap));
+        let min_gap = min_gap.map(measured_gap);
         Self {
             frame,
             max_strain,
@@ -287,6 +289,12 @@ mod tests {
         assert_eq!(statistics(&[StepReport::default()]).smallest_gap, None);
         let figures = FrameStatistics::new(2, &StepReport::default());
         assert!(serde_json::to_value(figures).unwrap()["min_gap"].is_null());
+    }
+
+    #[test]
+    fn a_gap_above_the_thickness_is_the_thickness() {
+        let distant = StepReport { min_gap: 106.0, ..StepReport::default() };
+        assert_eq!(statistics(&[distant]).smallest_gap, Some((1.0, 2)));
     }
 
     #[test]

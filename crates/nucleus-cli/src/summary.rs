@@ -74,7 +74,10 @@ impl Summary<'_> {
             writeln!(text, "worst strain {} at frame {frame}{of_99}", figures::percent(strain))?;
         }
         if let Some((gap, frame)) = statistics.smallest_gap {
-            writeln!(text, "minimum gap {} of the thickness, at frame {frame}", figures::number(gap))?;
+            match gap < checks::MAX_MEASURED_GAP {
+                true => writeln!(text, "minimum gap {} of the thickness, at frame {frame}", figures::number(gap))?,
+                false => writeln!(text, "minimum gap at least the thickness; larger gaps are not measured")?,
+            }
         }
         if statistics.particles.most > 0 {
             let Count { most, frame, end, .. } = statistics.particles;

@@ -92,6 +92,17 @@ const FRAME: &str = "frame";
 /// The check that requires an audit.
 const NO_SELF_INTERSECTION: &str = "noSelfIntersection";
 
+/// The check of gaps.
+pub const MIN_GAP: &str = "minGap";
+/// Largest gap ratio that is measured: a collider farther away than the thickness may be no contact candidate.
+pub const MAX_MEASURED_GAP: f64 = 1.0;
+
+/// A gap ratio of the solver as far as it is measured: 1 is a gap of at least the thickness.
+pub fn measured_gap(min_gap: f64) -> f64 {
+    // `f64::min` would turn NaN into 1.
+    if min_gap > MAX_MEASURED_GAP { MAX_MEASURED_GAP } else { min_gap }
+}
+
 /// The check of unresolved pairs. A run without it fails at the first.
 pub const MAX_UNRESOLVED: &str = "maxUnresolved";
 /// The check of points inside colliders. A run without it fails if it ends with any.
@@ -161,10 +172,10 @@ static FORMS: [Form; 18] = [
         "From this frame on 99 % of the links are not longer than at rest by more than this share.",
     ),
     at_least(
-        "minGap",
+        MIN_GAP,
         &["gap"],
-        |sample| Some(sample.report.min_gap),
-        "The gap between cloth and colliders is at least this share of the thickness.",
+        |sample| Some(measured_gap(sample.report.min_gap)),
+        "The gap between cloth and colliders is at least this share of the thickness, at most 1: larger gaps are not measured.",
     ),
     at_most(
         "finite",

@@ -26,6 +26,16 @@ fn a_gap_below_the_limit_fails() {
 }
 
 #[test]
+fn a_gap_above_the_thickness_is_not_measured() {
+    let gap = |min_gap| StepReport { min_gap, ..StepReport::default() };
+    for distant in [1.5, 106.0, f64::INFINITY] {
+        let outcome = judge("minGap", &[1.0], &[gap(distant)]);
+        assert_eq!((outcome.passed, outcome.worst), (true, Some((1.0, 2))), "{distant}");
+    }
+    assert!(!judge("minGap", &[0.9], &[gap(f64::NAN)]).passed);
+}
+
+#[test]
 fn one_unresolved_pair_is_a_penetration() {
     let unresolved = StepReport { pairs_unresolved: 1, ..StepReport::default() };
     assert!(!judge("noPenetration", &[], &[StepReport::default(), unresolved, StepReport::default()]).passed);

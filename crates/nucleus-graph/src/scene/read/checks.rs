@@ -1,6 +1,6 @@
 //! `checks: [noPenetration, maxStretch(0.02), atRestBy(frame: 100, speed: 0.01)]`.
 
-use crate::checks::{Check, Form, RENAMED, Values};
+use crate::checks::{Check, Form, MAX_MEASURED_GAP, MIN_GAP, RENAMED, Values};
 use crate::diagnostic::{Findings, listed, nearest};
 use crate::scene::syntax::{Node, Value, Word};
 
@@ -36,7 +36,13 @@ fn read_check(node: &Node, findings: &mut Findings) -> Option<Check> {
         };
         return None;
     };
-    Check::new(form.name, &arguments(form, node, findings)?)
+    let arguments = arguments(form, node, findings)?;
+    if form.name == MIN_GAP && arguments.iter().any(|&gap| gap > MAX_MEASURED_GAP) {
+        let message = "`minGap` takes at most 1: gaps above the thickness are not measured";
+        findings.error(&node.span, message).help("write `minGap(1)`, or raise `thickness`");
+        return None;
+    }
+    Check::new(form.name, &arguments)
 }
 
 fn arguments(form: &Form, node: &Node, findings: &mut Findings) -> Option<Vec<f64>> {

@@ -36,6 +36,20 @@ fn the_nearest_attribute_is_suggested() {
 }
 
 #[test]
+fn a_check_of_gaps_above_the_thickness_is_refused() {
+    let scene = |checks: &str| with_nodes("").replacen("nodes:", &format!("checks: [{checks}], nodes:"), 1);
+    assert!(read_scene_text(&scene("minGap(1)"), Path::new("test.ron")).is_ok());
+    expect(
+        &scene("minGap(10)"),
+        &[(
+            "minGap(10)",
+            "`minGap` takes at most 1: gaps above the thickness are not measured",
+            "write `minGap(1)`, or raise `thickness`",
+        )],
+    );
+}
+
+#[test]
 fn all_mistakes_are_reported_together_and_in_order() {
     let text = r#"Scene(
         time: (start: 10, end: 1, fps: 24),
