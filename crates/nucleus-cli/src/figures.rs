@@ -25,7 +25,11 @@ pub fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
     }
-    let digits = (3 - x.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let magnitude = x.abs().log10().floor() as i32;
+    if magnitude < -6 {
+        return format!("{x:.3e}");
+    }
+    let digits = (3 - magnitude).clamp(0, 12) as usize;
     let text = format!("{x:.digits$}");
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
@@ -58,6 +62,8 @@ mod tests {
         assert_eq!(number(-1.5), "-1.5");
         assert_eq!(number(123_456.0), "123456");
         assert_eq!(number(0.0), "0");
+        assert_eq!(number(-1.234_56e-9), "-1.235e-9");
+        assert_eq!(number(2e-40), "2.000e-40");
         assert_eq!(number(f64::INFINITY), "inf");
     }
 }

@@ -15,7 +15,7 @@ pub(crate) struct Attribute {
     /// Description of a message for other readers; stored in the file.
     pub schema: &'static str,
     /// Bytes per value.
-    width: usize,
+    pub width: usize,
 }
 
 pub(crate) const CONTACTS: Attribute = Attribute {
@@ -83,6 +83,16 @@ impl Attribute {
         let stated = stated as usize;
         let fits = count.is_none_or(|count| count == stated) && values.len() == self.width * stated;
         (fits && (found.frame, found.log_time()) == stamp).then_some(values)
+    }
+
+    /// The bytes of the values in the order of the points, from the planes of a message.
+    pub fn by_point(&self, bytes: &[u8]) -> Vec<u8> {
+        if self.width == 1 {
+            return bytes.to_vec();
+        }
+        let mut numbers = vec![0.0_f32; bytes.len() / 4];
+        unshuffle(bytes, &mut numbers);
+        numbers.iter().flat_map(|x| x.to_le_bytes()).collect()
     }
 }
 

@@ -6,9 +6,10 @@ use std::io::{Read, Seek};
 use std::mem::replace;
 
 use crate::error::ReadError;
+use crate::messages::attribute::{self, Attribute};
 use crate::read::playback::Playback;
 use crate::read::time_index::TimeSample;
-use crate::run::ObjectInfo;
+use crate::run::{ObjectInfo, RunInfo};
 
 /// One difference between two caches.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +49,21 @@ pub enum Difference {
     },
     /// Positions differ.
     Points(PointDifference),
+    /// Other recorded values of points differ; the first such time sample.
+    Values {
+        /// The object.
+        name: String,
+        /// The values: `velocities`, `contacts`, `strain`, `looks` (radius, opacity, colours) or `rotation`.
+        values: &'static str,
+        /// The frame.
+        frame: i32,
+        /// The substep, counted from 1; 0 is the initial state.
+        substep: u32,
+        /// The first point that differs.
+        point: usize,
+        /// Number of points that differ at this sample.
+        points: usize,
+    },
 }
 
 /// The first time sample at which an object's positions differ.
@@ -83,11 +99,12 @@ pub struct Comparison {
     pub largest: Option<PointDifference>,
 }
 
-/// Compares the time samples that two caches share. Distances up to `tolerance`, in scene units, are no difference; at
-/// 0 every bit counts, except that all NaNs are equal.
+/// Compares the time samples that two caches share: those at the same time of the scene, wherever each run starts.
+/// Distances up to `tolerance`, in scene units, are no difference; at 0 every bit counts, except that all NaNs of
+/// positions are equal, and all values that both caches record are compared, not only positions.
 ///
-/// Only the shown positions and faces count, not their compression or the recorded sample rate. A damaged frame is a
-/// difference; the other frames are still compared.
+/// Neither compression, the recorded sample rate nor a channel of one cache only is a difference. A damaged frame is one;
+/// the other frames are still compared.
 ///
 /// # Errors
 /// When the system fails to read.
@@ -107,6 +124,7 @@ pub fn compare<A: Read + Seek, B: Read + Seek>(
         damaged,
         mesh_differs: vec![false; objects.len()],
         points_differ: vec![false; objects.len()],
+        values_differ: BTreeSet::new(),
     };
     for (sample_a, sample_b) in samples {
         let (sample, mut is_readable) = (a.time_samples()[sample_a], true);
@@ -115,7 +133,27 @@ pub fn compare<A: Read + Seek, B: Read + Seek>(
             let two = comparer.readable(false, object_at(b, object_b, sample_b))?;
             match one.zip(two) {
                 Some((one, two)) => comparer.compare(place, sample, one, two),
-                None => is_readable = false,
+                None => {
+                    is_readable = false;
+                    continue;
+                }
+            }
+            // An initial state has positions only; contacts and velocities begin with the first step.
+            let is_initial = |sample: TimeSample| sample.substep == 0;
+            if tolerance > 0.0 || is_initial(sample) != is_initial(b.time_samples()[sample_b]) {
+                continue;
+            }
+            for values in VALUES {
+                let one = comparer.readable(true, values.of(a, object_a, sample_a))?;
+                let two = comparer.readable(false, values.of(b, object_b, sample_b))?;
+                match one.zip(two) {
+                    Some((Some(one), Some(two))) => {
+                        let name = &a.objects()[object_a].name;
+                        comparer.compare_values((place, name), sample, values, (&one, &two));
+                    }
+                    Some(_) => {}
+                    None => is_readable = false,
+                }
             }
         }
         comparer.comparison.time_samples += usize::from(is_readable);
@@ -135,6 +173,59 @@ fn object_at<R: Read + Seek>(
     Ok((cache.object_at(object, sample)?, positions))
 }
 
+/// Recorded values of points besides their positions.
+#[derive(Clone, Copy)]
+enum Values {
+    Velocities,
+    Attribute(&'static Attribute),
+}
+
+/// All of them.
+const VALUES: [Values; 1 + attribute::ALL.len()] = {
+    let mut all = [Values::Velocities; 1 + attribute::ALL.len()];
+    let mut k = 0;
+    while k < attribute::ALL.len() {
+        all[k + 1] = Values::Attribute(attribute::ALL[k]);
+        k += 1;
+    }
+    all
+};
+
+impl Values {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Velocities => "velocities",
+            Self::Attribute(attribute) => attribute.topic,
+        }
+    }
+
+    /// Bytes of the value of a point.
+    fn width(self) -> usize {
+        match self {
+            Self::Velocities => size_of::<[f32; 3]>(),
+            Self::Attribute(attribute) => attribute.width,
+        }
+    }
+
+    /// The bytes of all values, point by point; `None` where they are not recorded.
+    fn of<R: Read + Seek>(
+        self,
+        cache: &mut Playback<R>,
+        object: usize,
+        sample: usize,
+    ) -> Result<Option<Vec<u8>>, ReadError> {
+        match self {
+            Self::Velocities => {
+                let bytes = |all: Vec<[f32; 3]>| all.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+                Ok(cache.velocities(object, sample)?.map(bytes))
+            }
+            Self::Attribute(attribute) => {
+                Ok(cache.attribute(object, sample, attribute)?.map(|bytes| attribute.by_point(bytes)))
+            }
+        }
+    }
+}
+
 /// Collects the differences of two caches.
 struct Comparer {
     tolerance: f64,
@@ -145,6 +236,8 @@ struct Comparer {
     /// By common object, whether a difference of its mesh or of its positions was found.
     mesh_differs: Vec<bool>,
     points_differ: Vec<bool>,
+    /// Common objects and values of which a difference was found.
+    values_differ: BTreeSet<(usize, &'static str)>,
 }
 
 impl Comparer {
@@ -190,6 +283,25 @@ impl Comparer {
         }
         if !replace(&mut self.points_differ[place], true) {
             self.comparison.differences.push(Difference::Points(found));
+        }
+    }
+
+    /// Compares other values of the common object number `place` at a time sample.
+    fn compare_values(
+        &mut self,
+        (place, name): (usize, &str),
+        TimeSample { frame, substep, .. }: TimeSample,
+        values: Values,
+        (one, two): (&[u8], &[u8]),
+    ) {
+        let points = one.chunks_exact(values.width()).zip(two.chunks_exact(values.width()));
+        let mut differing = (0..).zip(points).filter(|(_, (one, two))| one != two);
+        let Some((point, _)) = differing.next() else { return };
+        if self.values_differ.insert((place, values.name())) {
+            let (name, points) = (name.to_owned(), 1 + differing.count());
+            let values = values.name();
+            let found = Difference::Values { name, values, frame, substep, point, points };
+            self.comparison.differences.push(found);
         }
     }
 
@@ -293,6 +405,15 @@ fn common_objects<A: Read + Seek, B: Read + Seek>(
     common
 }
 
+/// Nanoseconds that two times may differ by rounding: a start and a sample on each side.
+const TIME_ROUNDING: i128 = 2;
+
+/// The time of a sample in nanoseconds from frame 0.
+fn scene_time(run: &RunInfo, sample: &TimeSample) -> i128 {
+    let start = f64::from(run.start) * 1e9 / run.frames_per_second;
+    start.round() as i128 + i128::from(sample.log_time)
+}
+
 /// Indices in both caches of the time samples that both have. Of the other samples, only the first of each cache at a
 /// frame end is a difference: the recorded sample rate does not matter. A frame that the other cache has lost is damaged.
 fn common_samples<A: Read + Seek, B: Read + Seek>(
@@ -307,7 +428,10 @@ fn common_samples<A: Read + Seek, B: Read + Seek>(
     let mut is_reported = [false; 2];
     while i < one.len() || j < two.len() {
         let order = match (one.get(i), two.get(j)) {
-            (Some(x), Some(y)) => x.log_time.cmp(&y.log_time),
+            (Some(x), Some(y)) => match scene_time(a.run(), x) - scene_time(b.run(), y) {
+                apart if apart.abs() <= TIME_ROUNDING => Ordering::Equal,
+                apart => apart.cmp(&0),
+            },
             (Some(_), None) => Ordering::Less,
             _ => Ordering::Greater,
         };

@@ -90,7 +90,7 @@ impl<R: Read + Seek> Playback<R> {
     }
 
     /// The bytes of an attribute of an object at a time sample.
-    fn attribute(
+    pub(crate) fn attribute(
         &mut self,
         object: usize,
         sample: usize,

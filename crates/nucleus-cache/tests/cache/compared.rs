@@ -2,8 +2,9 @@
 
 use std::io::Cursor;
 
+use nalgebra::Vector3;
 use nucleus_cache::{Detail, Difference, Playback, Recorder, RunInfo, compare};
-use nucleus_core::{StepObserver, SubstepIndex};
+use nucleus_core::{ClothId, ColliderId, ContactState, StateView, StepObserver, SubstepIndex};
 
 use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
 
@@ -51,6 +52,79 @@ fn the_first_differing_point_is_named_with_its_distance() {
     let allowed = compare(&mut one, &mut two, largest.farthest.1).unwrap();
     assert!(allowed.differences.iter().all(|difference| !matches!(difference, Difference::Points(_))));
     assert!(comparison.rms > 0.0 && comparison.rms < largest.farthest.1);
+}
+
+#[test]
+fn frames_of_the_same_number_are_compared_where_runs_start_apart() {
+    let late = RunInfo { start: START + 3, velocities: true, ..falling::run_info() };
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), &late, falling::objects()).unwrap();
+    recorder.record_start(&Falling { frame: late.start, substep: SUBSTEPS }).unwrap();
+    for frame in late.start + 1..=END {
+        let mut observer = recorder.frame(frame).unwrap();
+        let state = Falling { frame, substep: SUBSTEPS };
+        observer.substep(SubstepIndex { substep: SUBSTEPS, substeps: SUBSTEPS }, &state);
+        recorder.end_frame(&()).unwrap();
+    }
+    recorder.finish().unwrap();
+    let all = RunInfo { velocities: true, ..falling::run_info() };
+    let comparison = compare(&mut run(&all), &mut open(file.contents()), 0.0).unwrap();
+    let early = Difference::TimeSample { frame: START, substep: 0, in_first: true };
+    assert_eq!((comparison.differences, comparison.time_samples as i32), (vec![early], END - late.start + 1));
+}
+
+/// A state whose velocities are twice those of [`Falling`].
+struct Faster(Falling);
+
+impl StateView for Faster {
+    fn positions(&self, id: ClothId, units: f64, out: &mut Vec<[f32; 3]>) {
+        self.0.positions(id, units, out);
+    }
+    fn velocities(&self, id: ClothId, units: f64, out: &mut Vec<[f32; 3]>) {
+        self.0.velocities(id, 2.0 * units, out);
+    }
+    fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
+        self.0.contacts(out);
+        out[0][2] = ContactState::Free;
+    }
+    fn collider_positions(&self, id: ColliderId, units: f64, out: &mut Vec<[f32; 3]>) {
+        self.0.collider_positions(id, units, out);
+    }
+    fn collider_moved(&self, id: ColliderId) -> bool {
+        self.0.collider_moved(id)
+    }
+    fn point(&self, _: ClothId, _: usize) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+}
+
+#[test]
+fn values_that_differ_at_equal_positions_are_a_difference() {
+    let all = RunInfo { velocities: true, contacts: true, ..falling::run_info() };
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), &all, falling::objects()).unwrap();
+    recorder.record_start(&Falling::INITIAL).unwrap();
+    for frame in START + 1..=END {
+        let mut observer = recorder.frame(frame).unwrap();
+        let state = Faster(Falling { frame, substep: SUBSTEPS });
+        observer.substep(SubstepIndex { substep: SUBSTEPS, substeps: SUBSTEPS }, &state);
+        recorder.end_frame(&()).unwrap();
+    }
+    recorder.finish().unwrap();
+    let name = &falling::objects()[0].1.name;
+    let differs = |values, point, points| Difference::Values {
+        name: name.clone(),
+        values,
+        frame: START + 1,
+        substep: 1,
+        point,
+        points,
+    };
+    let mut other = open(file.contents());
+    let found = compare(&mut run(&all), &mut other, 0.0).unwrap().differences;
+    assert_eq!(found, [differs("velocities", 0, 4), differs("contacts", 2, 1)]);
+    assert_eq!(compare(&mut run(&falling::run_info()), &mut other, 0.0).unwrap().differences, []);
+    assert_eq!(compare(&mut run(&all), &mut other, 1e-9).unwrap().differences, []);
 }
 
 #[test]

@@ -17,14 +17,16 @@ use crate::{figures, files, options, output};
 /// The second may be an nCache of Maya (.xml, .mc, .mcx): objects go together by name (`nCloth1` and `nClothShape1`), or
 /// if each side has only one; distances are also given as shares of the distance travelled.
 ///
-/// Exits with 0 if the caches are equal and with 1 if they differ. Only times that both caches hold are compared.
+/// Exits with 0 if the caches are equal and with 1 if they differ. Frames of the same number are compared, with all values
+/// that both caches record: positions, velocities, contacts, strain, and radius, opacity, colours and orientation of
+/// particles. With --tolerance only positions are compared.
 #[derive(Debug, Args)]
 pub struct Diff {
     /// A cache (.mcap).
     first: PathBuf,
     /// The other cache (.mcap), or an nCache (.xml).
     second: PathBuf,
-    /// Largest distance, in scene units, that counts as equal; 0 compares bits.
+    /// Largest distance of positions, in scene units, that counts as equal; 0 compares the bits of all values.
     #[arg(long, default_value_t = 0.0, value_parser = options::not_negative)]
     tolerance: f64,
     /// Print one JSON object.
@@ -73,8 +75,10 @@ impl Diff {
     fn as_text(&self, comparison: &Comparison) -> Result<String, std::fmt::Error> {
         let moments = figures::count(comparison.time_samples, "moment");
         if comparison.differences.is_empty() {
-            let how = if self.tolerance > 0.0 { "within the tolerance" } else { "in every bit" };
-            return Ok(format!("equal {how}, {moments} compared\n"));
+            return Ok(match self.tolerance > 0.0 {
+                true => format!("positions equal within the tolerance, {moments} compared\n"),
+                false => format!("equal in every bit, {moments} compared\n"),
+            });
         }
         let mut text = String::new();
         for difference in &comparison.differences {
@@ -106,8 +110,12 @@ impl Diff {
                 )
             }
             Difference::TimeSample { frame, in_first, .. } => {
-                format!("frames from {frame} on are in `{}` only", name(in_first))
+                format!("frame {frame} is the first that is in `{}` only", name(in_first))
             }
+            Difference::Values { name, values, frame, substep, point, points } => format!(
+                "{values} differ first in `{name}`: frame {frame} substep {substep}, point {point}; {} differ there",
+                figures::count(*points, "point")
+            ),
             Difference::Points(found) => format!(
                 "first in `{}`: {}, point {} by {}; {} differ there, point {} most, by {}",
                 found.object,
@@ -248,6 +256,9 @@ fn as_json(comparison: &Comparison) -> Value {
             json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
         }
         Difference::Points(found) => json!({ "points": points(found) }),
+        Difference::Values { name, values, frame, substep, point, points } => json!({
+            "values": values, "object": name, "frame": frame, "substep": substep, "point": point, "points": points,
+        }),
         _ => Value::Null,
     });
     json!({
