@@ -78,14 +78,30 @@ pub fn run(arguments: Vec<OsString>) -> u8 {
         // The reader has closed the pipe: `nucleus info x.mcap | head -3`.
         Err(error) if output::is_broken_pipe(&error) => Outcome::Success.exit_code(),
         Err(error) if output::is_print_error(&error) => {
-            say!("error: {error:#}");
+            say!("error: {}", error_text(&error));
             Outcome::Problem.exit_code()
         }
         Err(error) => {
-            say!("error: {error:#}");
-            process::COULD_NOT_START
+            say!("error: {}", error_text(&error));
+            if is_full_disk(&error) { Outcome::Problem.exit_code() } else { process::COULD_NOT_START }
         }
     }
+}
+
+/// An error with its causes. A cause that the text before it states already is left out.
+fn error_text(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).fold(String::new(), |text, cause| match text.contains(&cause) {
+        true if !cause.is_empty() => text,
+        _ if text.is_empty() => cause,
+        _ => format!("{text}: {cause}"),
+    })
+}
+
+/// Whether a file could not be written because there is no more room for it. The command had started by then.
+fn is_full_disk(error: &anyhow::Error) -> bool {
+    use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    let io = error.chain().filter_map(|cause| cause.downcast_ref::<std::io::Error>());
+    io.into_iter().any(|error| matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge))
 }
 
 /// Parses the arguments; ends the process with a message if they are wrong or ask for help, in the wanted colours.

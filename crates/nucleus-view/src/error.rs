@@ -89,3 +89,15 @@ pub enum ViewError {
         path: PathBuf,
     },
 }
+
+impl ViewError {
+    /// A PNG that could not be encoded or written. An error of the system becomes the source, which the encoder's error
+    /// does not name.
+    pub(crate) fn encode(path: impl Into<PathBuf>, source: png::EncodingError) -> Self {
+        let path = path.into();
+        match source {
+            png::EncodingError::IoError(source) => Self::Create { path, source },
+            source => Self::Encode { path, source },
+        }
+    }
+}

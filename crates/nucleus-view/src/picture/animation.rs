@@ -31,8 +31,8 @@ impl AnimationWriter {
     pub fn create(path: impl AsRef<Path>, size: [u32; 2], fps: f64) -> Result<Self, ViewError> {
         let path = path.as_ref();
         let (file, handle) = open(path)?;
-        let encoder = start(BufWriter::new(handle), size, fps)
-            .map_err(|source| ViewError::Encode { path: path.into(), source })?;
+        let encoder =
+            start(BufWriter::new(handle), size, fps).map_err(|source| ViewError::encode(path, source))?;
         Ok(Self { file, size, encoder, last: None, frames: 0 })
     }
 
@@ -48,7 +48,7 @@ impl AnimationWriter {
         let changed =
             self.last.as_ref().map_or([0, 0, self.size[0], self.size[1]], |last| changed(last, image));
         self.write_part(image, changed)
-            .map_err(|source| ViewError::Encode { path: self.file.destination().into(), source })?;
+            .map_err(|source| ViewError::encode(self.file.destination(), source))?;
         self.last = Some(image.clone());
         self.frames += 1;
         Ok(())
@@ -64,7 +64,7 @@ impl AnimationWriter {
         if frames == 0 {
             return Err(ViewError::NoFrame { path });
         }
-        encoder.finish().map_err(|source| ViewError::Encode { path: path.clone(), source })?;
+        encoder.finish().map_err(|source| ViewError::encode(&path, source))?;
         let counted = file.handle().and_then(|handle| set_frame_count(handle, frames));
         counted.and_then(|()| file.commit()).map_err(|source| ViewError::Create { path, source })
     }

@@ -85,7 +85,7 @@ impl Image {
         let create = |source| ViewError::Create { path: path.into(), source };
         let mut file = AtomicFile::create(path).map_err(create)?;
         let encoded = self.encode(BufWriter::new(&mut file), compression);
-        encoded.map_err(|source| ViewError::Encode { path: path.into(), source })?;
+        encoded.map_err(|source| ViewError::encode(path, source))?;
         file.commit().map_err(create)
     }
 
@@ -125,7 +125,7 @@ impl Image {
     pub fn to_png(&self) -> Result<Vec<u8>, ViewError> {
         let mut bytes = Vec::new();
         let encoded = self.encode(&mut bytes, png::Compression::Balanced);
-        encoded.map_err(|source| ViewError::Encode { path: "a picture in memory".into(), source })?;
+        encoded.map_err(|source| ViewError::encode("a picture in memory", source))?;
         Ok(bytes)
     }
 
