@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, ensure};
 use nucleus_cache::{OpenError, Playback};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::first_frame_warnings;
 use nucleus_graph::memory::Memory;
 use nucleus_graph::scene::{Assignment, Diagnostic, Scene, assigned, read_scene_within, read_text};
+use nucleus_maya::is_maya_scene;
 
 use crate::diagnostics;
 use crate::options::FrameRange;
@@ -30,7 +31,23 @@ pub fn memory_limit() -> Memory {
 
 /// The text of a scene file.
 pub fn scene_text(path: &Path) -> Result<String> {
+    refuse_maya_scene(path)?;
     read_text(path, memory_limit()).map_err(|error| anyhow!(error))
+}
+
+/// Refuses a Maya scene where a scene or a cache is expected.
+fn refuse_maya_scene(path: &Path) -> Result<()> {
+    let (name, is_binary) =
+        (path.display(), path.extension().is_some_and(|end| end.eq_ignore_ascii_case("mb")));
+    ensure!(
+        !is_maya_scene(path) || is_binary,
+        "`{name}` is a Maya scene: `nucleus import {name}` makes a scene (.ron) of it"
+    );
+    ensure!(
+        !is_binary,
+        "`{name}` is a binary Maya scene: save it as Maya ASCII (.ma), which `nucleus import` reads"
+    );
+    Ok(())
 }
 
 /// A scene file after reading and compiling, with or without errors.
@@ -108,8 +125,32 @@ impl SceneFile {
     }
 }
 
+/// The path of a cache that is to be written.
+///
+/// # Errors
+/// If its name does not end with `.mcap`: `nucleus render` would replace a cache that has the name of a picture.
+pub fn named_as_cache(out: &Path) -> Result<&Path> {
+    ensure!(
+        out.extension().is_some_and(|end| end.eq_ignore_ascii_case("mcap")),
+        "`{}` does not end with .mcap: the result of a run is a cache; write `-o {}`, and then `nucleus render` or \
+         `nucleus export` makes other files of it",
+        out.display(),
+        out.with_extension("mcap").display()
+    );
+    Ok(out)
+}
+
+/// Refuses an output that would replace its own input.
+pub fn refuse_own_input(input: &Path, out: &Path) -> Result<()> {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let is_same = real(input).is_some_and(|input| real(out) == Some(input));
+    ensure!(!is_same, "`{}` is the file that is read; name another one with `-o`", out.display());
+    Ok(())
+}
+
 /// Opens a cache.
 pub fn open_cache(path: &Path) -> Result<Playback> {
+    refuse_maya_scene(path)?;
     Playback::open(path).map_err(|error| match error {
         OpenError::Io { .. } if nucleus_cache::part_path(path).exists() => {
             let part = nucleus_cache::part_path(path);

@@ -85,3 +85,18 @@ fn a_scene_that_is_cut_off_says_where_and_keeps_what_it_has() {
     let said = stdout(&output) + &stderr(&output);
     assert!(said.contains("`cut.ma:62:2`: the file ends inside this statement"), "{said}");
 }
+
+#[test]
+fn a_maya_scene_where_a_scene_or_a_cache_belongs_points_to_import() {
+    let folder = folder();
+    bring(folder.path(), "drape.ma");
+    for command in ["check", "info", "graph", "trade", "fmt", "export", "render"] {
+        let output = nucleus(folder.path(), &[command, "drape.ma"]);
+        assert_refused(
+            &output,
+            "`drape.ma` is a Maya scene: `nucleus import drape.ma` makes a scene (.ron) of it",
+        );
+    }
+    let missing = nucleus(folder.path(), &["import", "no.ma"]);
+    assert_eq!(stderr(&missing).matches("os error 2").count(), 1, "{}", stderr(&missing));
+}
