@@ -7,7 +7,7 @@ use codespan_reporting::diagnostic::{Diagnostic as Shown, Label};
 use codespan_reporting::files::{Error, Files, SimpleFile};
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, ColorChoice};
 use codespan_reporting::term::{Config, emit_to_write_style};
-use nucleus_graph::scene::{Diagnostic, Severity};
+use nucleus_graph::scene::{Diagnostic, Severity, nearest};
 
 use crate::{figures, output};
 
@@ -167,6 +167,17 @@ fn show_in(
 /// A span that can be shown. `0..0` stands for the whole file; a span may exceed a text that has changed.
 fn place(span: &Range<usize>, text: &str) -> Option<Range<usize>> {
     (*span != (0..0) && span.start <= span.end && span.end <= text.len()).then(|| span.clone())
+}
+
+/// `` there is no preset `silkk`; did you mean `silk`? ``, or the known names where none is near.
+pub fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    match nearest(name, known.clone()) {
+        Some(near) => format!("there is no {what} `{name}`; did you mean `{near}`?"),
+        None => {
+            let known: Vec<String> = known.map(|known| format!("`{known}`")).collect();
+            format!("there is no {what} `{name}`; there are {}", known.join(", "))
+        }
+    }
 }
 
 #[cfg(test)]

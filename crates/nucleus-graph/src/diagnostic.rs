@@ -118,7 +118,7 @@ pub(crate) fn listed<S: AsRef<str>>(words: &[S]) -> String {
 
 /// The candidate with the smallest edit distance, if that is at most a third of the word's length (at least 1). Of
 /// equals, the first.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (word.chars().count() / 3).max(1);
     let near = candidates.into_iter().map(|candidate| (changes(word, candidate), candidate));
     let best = near.min_by_key(|&(changes, _)| changes)?;

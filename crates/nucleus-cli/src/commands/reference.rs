@@ -11,6 +11,7 @@ use nucleus_graph::paint;
 use nucleus_graph::scene::{Preset, presets};
 use nucleus_maya::maya_preset;
 
+use crate::diagnostics::unknown;
 use crate::process::Outcome;
 use crate::{figures, output};
 
@@ -31,7 +32,7 @@ impl Attrs {
             None => list_types()?,
             Some(name) => match find(name) {
                 Some(node_type) => table(node_type, self.all)?,
-                None => bail!("there is no node type `{name}`; there are {}", names()),
+                None => bail!(unknown("node type", name, node_types().iter().map(|known| known.name))),
             },
         };
         output::print(&text)?;
@@ -43,11 +44,6 @@ impl Attrs {
 fn find(name: &str) -> Option<&'static NodeType> {
     let loosely = || node_types().iter().copied().find(|known| known.name.eq_ignore_ascii_case(name));
     node_type(name).or_else(loosely)
-}
-
-fn names() -> String {
-    let names: Vec<String> = node_types().iter().map(|known| format!("`{}`", known.name)).collect();
-    names.join(", ")
 }
 
 fn list_types() -> Result<String, std::fmt::Error> {
@@ -90,8 +86,9 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
 /// Kind, default, range and unit in one line.
 fn facts(row: &Attribute) -> String {
     let mut facts = vec![kind(row)];
-    facts
-        .extend(row.default.as_ref().and_then(|value| default(row, value)).map(|value| format!("= {value}")));
+    // A default that depends on the scene is in the documentation.
+    let constant = row.default.as_ref().filter(|_| !row.doc().contains("Default: "));
+    facts.extend(constant.and_then(|value| default(row, value)).map(|value| format!("= {value}")));
     facts.extend(range(row.range));
     facts.extend(Some(row.unit.to_owned()).filter(|unit| !unit.is_empty()));
     facts.join("  ")
@@ -169,8 +166,7 @@ impl Presets {
             }
             Some(name) => {
                 let Some(preset) = all.iter().find(|preset| preset.name.eq_ignore_ascii_case(&name)) else {
-                    let names: Vec<String> = all.iter().map(|preset| format!("`{}`", preset.name)).collect();
-                    bail!("there is no preset `{name}`; there are {}", names.join(", "));
+                    bail!(unknown("preset", &name, all.iter().map(|preset| preset.name.as_str())));
                 };
                 if self.mel {
                     output::print(&maya_preset(preset))?;

@@ -56,3 +56,19 @@ fn presets_are_listed_with_the_attributes_they_set() {
     assert!(silk.contains("stretchResistance: 60"), "{silk}");
     assert_refused(&nucleus(folder.path(), &["presets", "silc"]), "there is no preset `silc`");
 }
+
+#[test]
+fn a_misspelt_type_or_preset_is_refused_with_the_nearest() {
+    let folder = folder();
+    let refused = |arguments: &[&str], words| assert_refused(&nucleus(folder.path(), arguments), words);
+    refused(&["attrs", "nCoth"], "there is no node type `nCoth`; did you mean `nCloth`?");
+    refused(&["presets", "silkk"], "there is no preset `silkk`; did you mean `silk`?");
+}
+
+#[test]
+fn a_default_that_the_mesh_decides_is_not_shown_as_a_number() {
+    let folder = folder();
+    let said = stdout(&nucleus(folder.path(), &["attrs", "nCloth"]));
+    let row = said.lines().find(|line| line.contains(" thickness (thss)")).unwrap();
+    assert!(!row.contains('='), "{row}");
+}

@@ -21,7 +21,10 @@ pub fn read_component(text: &str) -> Result<Component, String> {
         Some(which) => Selection::Elements(ElementKind::Point, which?),
         None => {
             let bracketed = elements.strip_suffix(']').and_then(|elements| elements.split_once('['));
-            let (word, which) = bracketed.ok_or_else(|| format!("`{text}` is not a component"))?;
+            let (word, which) = bracketed.ok_or_else(|| match nearest(elements, ["border", "corners"]) {
+                Some(near) => format!("`{text}` is not a component; did you mean `{object}.{near}`?"),
+                None => format!("`{text}` is not a component"),
+            })?;
             let kind = ElementKind::WORDS.iter().find(|(known, _)| *known == word).map(|(_, kind)| *kind);
             let kind = kind.ok_or_else(|| {
                 format!("`{word}` is no kind of elements: points are `vtx`, edges `e`, faces `f`")
@@ -170,6 +173,7 @@ mod tests {
         for (text, message) in [
             ("a.vtx", "`a.vtx` is not a component"),
             ("a.vtx[", "`a.vtx[` is not a component"),
+            ("a.corner", "`a.corner` is not a component; did you mean `a.corners`?"),
             ("a.cv[3]", "`cv` is no kind of elements: points are `vtx`, edges `e`, faces `f`"),
             ("a.vtx[-1]", "`-1` is not the number of a point"),
             ("a.e[]", "`` is not the number of an edge"),

@@ -25,7 +25,7 @@ mod short_form;
 pub mod syntax;
 mod write;
 
-pub use crate::diagnostic::{Diagnostic, Note, Severity};
+pub use crate::diagnostic::{Diagnostic, Note, Severity, nearest};
 pub use assignment::{AssignError, Assignment, assigned};
 pub use document::{Record, Scene, Source, TimeSpan};
 pub use file_text::{TextError, read_text};
