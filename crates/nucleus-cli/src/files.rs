@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use nucleus_cache::{OpenError, Playback};
+use nucleus_cache::{ObjectKind, OpenError, Playback};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::first_frame_warnings;
 use nucleus_graph::memory::Memory;
@@ -157,7 +157,7 @@ pub fn open_cache(path: &Path) -> Result<Playback> {
             let part = part.display();
             anyhow!(
                 "there is no `{}` yet: its run is still going or was killed; `nucleus play {part}` shows the frames so far, \
-                 `nucleus recover {part}` writes them as a complete cache",
+                 `nucleus resume {part}` continues it, `nucleus recover {part}` writes them as a complete cache",
                 path.display()
             )
         }
@@ -175,6 +175,11 @@ pub fn open_cache_and_warn(path: &Path) -> Result<Playback> {
     Ok(cache)
 }
 
+/// Whether a cache has an object of particles.
+pub fn has_particles(cache: &Playback) -> bool {
+    cache.objects().iter().any(|object| object.kind == ObjectKind::Particles)
+}
+
 /// The index of the last recorded state of `frame`, or of the cache.
 pub fn moment(cache: &Playback, frame: Option<i32>) -> Result<usize> {
     let moments = cache.time_samples();
@@ -182,7 +187,13 @@ pub fn moment(cache: &Playback, frame: Option<i32>) -> Result<usize> {
     match frame {
         None => Ok(moments.len() - 1),
         Some(frame) => cache.end_of(frame).with_context(|| {
-            format!("there is no frame {frame}; the cache has {} to {}", first.frame, last.frame)
+            let has = format!("there is no frame {frame}; the cache has {} to {}", first.frame, last.frame);
+            let frames = || moments.iter().map(|moment| moment.frame);
+            match frames().filter(|&near| near < frame).max().zip(frames().filter(|&near| near > frame).min())
+            {
+                Some((before, after)) => format!("{has}, of those next to it {before} and {after}"),
+                None => has,
+            }
         }),
     }
 }

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::Args;
 use clap::builder::PossibleValue;
-use nucleus_cache::atomic_file;
+use nucleus_cache::{Playback, atomic_file};
 use nucleus_interop::{Format, Request, Selection, export};
 use nucleus_maya::maya_ascii;
 
@@ -103,6 +103,8 @@ impl Export {
         }
         let mut cache = files::open_cache_and_warn(&self.file)?;
         let (format, out) = self.target()?;
+        files::refuse_own_input(&self.file, &out)?;
+        self.check_options(&cache)?;
         let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
         let frames = self.frames.map(|frames| {
             frames.within(start).context("the frame range exceeds the largest frame number, 2147483647")
@@ -117,8 +119,13 @@ impl Export {
         };
         let request = Request { format, out: out.clone(), selection, force: self.force };
         let mut progress = ShareProgress::new("exporting");
+        let is_new = !out.exists();
         let exported = export(&mut cache, &request, &mut |share| progress.show(share));
         progress.end();
+        if exported.is_err() && is_new {
+            // Only a folder without files can be removed so.
+            let _ = std::fs::remove_dir(&out);
+        }
         let exported = exported?;
         let sizes = exported.files.iter().map(|file| Ok(std::fs::metadata(file)?.len()));
         let bytes: u64 = sizes.sum::<std::io::Result<u64>>()?;
@@ -134,6 +141,35 @@ impl Export {
         Ok(Outcome::Success)
     }
 
+    /// Refuses options that would have no effect on a cache.
+    fn check_options(&self, cache: &Playback) -> Result<()> {
+        ensure!(
+            !self.substeps || cache.time_samples().iter().any(|sample| sample.substeps > 1),
+            "the cache holds no substeps; `nucleus run --record substeps` records them"
+        );
+        ensure!(
+            !self.surface || files::has_particles(cache),
+            "`--surface` is for particles, and the cache has none"
+        );
+        Ok(())
+    }
+
+    /// Refuses options that have no effect on a scene.
+    fn check_scene_options(&self) -> Result<()> {
+        let of_caches = [
+            (self.frames.is_some(), "--frames"),
+            (self.every != 1, "--every"),
+            (self.substeps, "--substeps"),
+            (!self.object.is_empty(), "--object"),
+            (self.scale != 1.0, "--scale"),
+            (self.surface, "--surface"),
+        ];
+        match of_caches.iter().find(|(is_given, _)| *is_given) {
+            Some((_, option)) => bail!("`{option}` is for caches, and `{}` is a scene", self.file.display()),
+            None => Ok(()),
+        }
+    }
+
     /// Whether the file is a scene, by its name.
     fn is_scene(&self) -> bool {
         self.file.extension().is_some_and(|end| end.eq_ignore_ascii_case("ron"))
@@ -144,11 +180,21 @@ impl Export {
         if let Some(Wanted(Some(format))) = self.format {
             bail!("`{}` is a scene; {} is a format of caches", self.file.display(), format.name());
         }
+        self.check_scene_options()?;
+        let is_ascii = |out: &PathBuf| out.extension().is_some_and(|end| end.eq_ignore_ascii_case("ma"));
+        if let Some(out) = self.out.as_ref().filter(|out| !is_ascii(out)) {
+            let named = out.with_extension("ma");
+            bail!(
+                "a scene is written as Maya ASCII, which Maya opens as .ma: write `-o {}`",
+                named.display()
+            );
+        }
         let Some((scene, ..)) = files::open_scene(&self.file, None)?.report()? else {
             return Ok(Outcome::InvalidInput);
         };
         let stem = self.file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
         let out = self.out.unwrap_or_else(|| PathBuf::from(format!("{stem}.ma")));
+        files::refuse_own_input(&self.file, &out)?;
         if out.exists() && (!self.force || out.is_dir()) {
             bail!("`{}` exists; replace it with `--force`", out.display());
         }
@@ -177,6 +223,17 @@ impl Export {
             let all: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
             bail!("the format is unknown; give `--as` one of {}", all.join(", "));
         };
+        if let Some((out, other)) =
+            self.out.as_ref().zip(named).filter(|(out, other)| differs(*other, format, out))
+        {
+            bail!(
+                "`{}` is the name of a {} file, but `--as` asks for {}: name it `{}`, or leave `--as` out",
+                out.display(),
+                other.name(),
+                format.name(),
+                out.with_extension(format.name()).display()
+            );
+        }
         let out = match &self.out {
             Some(out) => out.clone(),
             None => {
@@ -186,4 +243,14 @@ impl Export {
         };
         Ok((format, out))
     }
+}
+
+/// Whether a file name that implies the format `named` is wrong for `format`.
+fn differs(named: Format, format: Format, out: &std::path::Path) -> bool {
+    // Both kinds of USD and of nCache share an extension.
+    let is_shared = out.extension().is_some_and(|end| {
+        let is_usd = end.eq_ignore_ascii_case("usd") && matches!(format, Format::Usda | Format::Usdc);
+        is_usd || (end.eq_ignore_ascii_case("xml") && matches!(format, Format::Mc | Format::Mcx))
+    });
+    named != format && !is_shared
 }

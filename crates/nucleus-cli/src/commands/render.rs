@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use nucleus_cache::Playback;
 use nucleus_view::{Background, Camera, Colouring, Film, Image, Style};
 
 use super::film::{self, Interrupted, OutputKind};
-use crate::options::FrameRange;
+use crate::diagnostics::unknown;
+use crate::options::{self, FrameRange};
 use crate::process::Outcome;
 use crate::progress::ShareProgress;
 use crate::{figures, files, output, process};
@@ -38,8 +39,8 @@ pub struct Render {
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
     /// Draw every Nth frame.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-    every: u32,
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    every: Option<u32>,
     /// The camera of the scene; `none` selects an automatic camera. Default: the first camera of the scene.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target"])]
     camera: Option<String>,
@@ -49,11 +50,11 @@ pub struct Render {
     /// The point at the centre of the picture in scene units, `x,y,z`; default: the centre of the run.
     #[arg(long, value_parser = parse_point, allow_hyphen_values = true)]
     target: Option<[f32; 3]>,
-    /// Vertical field of view in degrees.
-    #[arg(long, default_value_t = 30.0, value_parser = parse_view)]
-    fov: f32,
+    /// Vertical field of view in degrees, with --eye or --target; default: 30.
+    #[arg(long, value_parser = parse_view)]
+    fov: Option<f32>,
     /// Colour cloth by its strain, with full colour at this strain (0.05 is 5 %).
-    #[arg(long, value_name = "FULL_SCALE", num_args = 0..=1, default_missing_value = "0.05")]
+    #[arg(long, value_name = "FULL_SCALE", num_args = 0..=1, default_missing_value = "0.05", value_parser = parse_strain)]
     strain: Option<f32>,
     /// Draw the edges of the faces.
     #[arg(long)]
@@ -72,6 +73,9 @@ pub struct Render {
     samples: u32,
 }
 
+/// Vertical field of view in degrees of a camera of `--eye` or `--target`.
+const DEFAULT_VIEW: f32 = 30.0;
+
 impl Render {
     /// Draws and writes the output.
     pub fn run(self) -> Result<Outcome> {
@@ -82,7 +86,9 @@ impl Render {
                 PathBuf::from(self.file.file_stem().context("the cache has no name")?).with_extension("png")
             }
         };
+        files::refuse_own_input(&self.file, &out)?;
         let kind = OutputKind::of(&out, self.animate)?;
+        self.check_options(&cache, kind)?;
         let is_still = matches!(kind, OutputKind::Still | OutputKind::Sequence);
         ensure!(
             is_still || self.background != Background::Transparent,
@@ -103,13 +109,47 @@ impl Render {
         Ok(Outcome::Success)
     }
 
+    /// Refuses options that would have no effect.
+    fn check_options(&self, cache: &Playback, kind: OutputKind) -> Result<()> {
+        if kind == OutputKind::Still {
+            let several = [
+                (self.frames.is_some(), "--frames"),
+                (self.every.is_some(), "--every"),
+                (self.animate, "--animate"),
+            ];
+            if let Some((_, option)) = several.iter().find(|(is_given, _)| *is_given) {
+                bail!(
+                    "`{option}` is for several frames, and the output is a still: `--animate` makes an animated .png; a .gif, \
+                     .mp4, .mov or .webm is a film; `####.png` in the name is a picture per frame"
+                );
+            }
+        }
+        ensure!(
+            kind == OutputKind::Still || self.frame.is_none(),
+            "`--frame` is for a still (.png or .exr); `--frames` selects those of a film"
+        );
+        ensure!(
+            self.fov.is_none() || self.eye.is_some() || self.target.is_some(),
+            "`--fov` is for a camera of `--eye` or `--target`; other cameras have their own"
+        );
+        ensure!(
+            !self.surface || files::has_particles(cache),
+            "`--surface` is for particles, and the cache has none"
+        );
+        for (name, _) in &self.tint {
+            let known = || cache.objects().iter().map(|object| object.name.as_str());
+            ensure!(known().any(|known| known == name), "`--tint`: {}", unknown("object", name, known()));
+        }
+        Ok(())
+    }
+
     fn still(&self, cache: &mut Playback, out: &Path) -> Result<String> {
         let moment = files::moment(cache, self.frame)?;
         let frame = cache.time_samples()[moment].frame;
-        // The height of the floor is that of the whole run, estimated from 24 of its frames.
+        // Camera and floor are those of the whole run, estimated from 24 of its frames.
         let (every, scene_camera) = (cache.time_samples().len() / 24, self.scene_camera(cache)?);
-        let mut film = Film::of(cache, every, self.style(out))?;
-        let camera = self.with_options(film.framing(moment)?);
+        let film = Film::of(cache, every, self.style(out))?;
+        let camera = self.with_options(film.camera())?;
         film::picture(&look_through(film.seen_by(camera), scene_camera).moment(moment)?, out)?;
         Ok(format!("frame {frame} in {}", sized(out)?))
     }
@@ -117,14 +157,14 @@ impl Render {
     fn film(&self, cache: &mut Playback, out: &Path, kind: OutputKind) -> Result<String> {
         let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
         let scene_camera = self.scene_camera(cache)?;
-        let mut film = Film::of(cache, self.every as usize, self.style(out))?;
+        let mut film = Film::of(cache, self.every.unwrap_or(1) as usize, self.style(out))?;
         if let Some(frames) = self.frames {
             let (first, last) = frames
                 .within(start)
                 .context("the frame range exceeds the largest frame number, 2147483647")?;
             film = film.between(first, last).context("none of these frames was recorded")?;
         }
-        let camera = self.with_options(film.camera());
+        let camera = self.with_options(film.camera())?;
         let mut film = look_through(film.seen_by(camera), scene_camera);
         let mut progress = ShareProgress::new("drawing");
         let result = film::write(&mut film, out, kind, self.size, &mut |share| progress.show(share));
@@ -172,16 +212,20 @@ impl Render {
     }
 
     /// A camera with `--eye`, `--target` and `--fov` applied.
-    fn with_options(&self, own: Camera) -> Camera {
+    fn with_options(&self, own: Camera) -> Result<Camera> {
         let target = self.target.unwrap_or(own.target);
-        match (self.eye, self.target) {
-            (Some(eye), _) => Camera { eye, target, field_of_view: self.fov, ..own },
+        let field_of_view = self.fov.unwrap_or(DEFAULT_VIEW);
+        Ok(match (self.eye, self.target) {
+            (Some(eye), _) => {
+                ensure!(eye != target, "`--eye` and `--target` are one point, so the camera looks nowhere");
+                Camera { eye, target, field_of_view, ..own }
+            }
             (None, Some(_)) => {
                 let eye = [0, 1, 2].map(|axis| own.eye[axis] - own.target[axis] + target[axis]);
-                Camera { eye, target, field_of_view: self.fov, ..own }
+                Camera { eye, target, field_of_view, ..own }
             }
             (None, None) => own,
-        }
+        })
     }
 }
 
@@ -233,6 +277,10 @@ fn parse_background(text: &str) -> Result<Background, String> {
 fn parse_tint(text: &str) -> Result<(String, [f32; 3]), String> {
     let (name, colour) = text.rsplit_once('=').ok_or("write it as name=#rrggbb")?;
     Ok((name.to_owned(), parse_colour(colour)?))
+}
+
+fn parse_strain(text: &str) -> Result<f32, String> {
+    options::positive(text).map(|strain| strain as f32)
 }
 
 fn parse_view(text: &str) -> Result<f32, String> {

@@ -16,7 +16,7 @@ use crate::process::Outcome;
 use crate::resumed_run::ResumedRun;
 use crate::run_loop::{self, Finished};
 use crate::run_statistics::RunStatistics;
-use crate::{options, output, process, recording};
+use crate::{files, options, output, process, recording};
 
 /// Resumes an interrupted or killed run, with the same bits as a run that never stopped.
 ///
@@ -132,8 +132,13 @@ impl Resume {
             extra: recording::facts_of(old.cache.run(), self.scene.is_some().then_some(&program)),
             ..old.cache.run().clone()
         };
-        let out = self.out.clone().unwrap_or_else(|| old.complete.clone());
+        let out = match &self.out {
+            Some(out) => files::named_as_cache(out)?.to_owned(),
+            None => old.complete.clone(),
+        };
         let replace = self.force || self.out.is_none();
+        // The frames of the resumed cache itself are all in the new one.
+        let replaces = out != old.file;
         let objects = recording::sources(&simulation, old.cache.objects().to_vec());
         let help = self.help(&old, copied);
         let start_is_lost = old.lost().contains(&start);

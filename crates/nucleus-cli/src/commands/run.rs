@@ -112,7 +112,7 @@ impl Run {
     /// The path of the cache.
     pub fn out(&self) -> Result<PathBuf> {
         match &self.out {
-            Some(out) => Ok(out.clone()),
+            Some(out) => files::named_as_cache(out).map(Path::to_owned),
             None => {
                 let stem = self.scene.file_stem().context("the scene has no name")?;
                 Ok(Path::new(stem).with_extension("mcap"))

@@ -196,3 +196,47 @@ fn a_cache_that_has_lost_its_start_is_recovered_with_the_meshes_of_its_scene() {
     assert_eq!((cache.run().units_per_metre, cache.run().start), (100.0, 1));
     assert!(cache.time_samples().len() >= 4, "{}", cache.corruption());
 }
+
+#[test]
+fn an_export_option_without_effect_is_refused() {
+    let folder = folder();
+    cache(folder.path());
+    scene(folder.path(), 2, "");
+    for (options, words) in [
+        (&["fall.mcap", "--as", "obj", "--substeps"][..], "`nucleus run --record substeps` records them"),
+        (&["fall.mcap", "--as", "obj", "--surface"], "`--surface` is for particles, and the cache has none"),
+        (
+            &["fall.mcap", "--as", "usda", "-o", "q.glb"],
+            "`q.glb` is the name of a glb file, but `--as` asks for usda: name it `q.usda`",
+        ),
+        (&["drape.ron", "-o", "q.mb"], "write `-o q.ma`"),
+        (&["drape.ron", "--frames", "4"], "`--frames` is for caches, and `drape.ron` is a scene"),
+    ] {
+        assert_refused(&nucleus(folder.path(), &[&["export"], options].concat()), words);
+    }
+    let usd = nucleus(folder.path(), &["export", "fall.mcap", "--as", "usda", "-o", "q.usd"]);
+    assert_eq!(usd.status.code(), Some(0), "{}", stderr(&usd));
+}
+
+#[test]
+fn a_frame_between_recorded_ones_is_refused_with_its_neighbours() {
+    let folder = folder();
+    scene(folder.path(), 20, "");
+    let run = nucleus(folder.path(), &["run", "drape.ron", "--record", "every:7"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let render = nucleus(folder.path(), &["render", "drape.mcap", "--frame", "5"]);
+    assert_refused(&render, "there is no frame 5; the cache has 1 to 20, of those next to it 1 and 8");
+}
+
+#[test]
+fn runs_that_start_apart_do_not_differ_in_the_frames_of_both() {
+    let folder = folder();
+    scene(folder.path(), 8, "");
+    nucleus(folder.path(), &["run", "drape.ron", "--velocities"]);
+    let late = ["run", "drape.ron", "--from", "drape.mcap@4", "--frames", "4..8", "-o", "late.mcap"];
+    let run = nucleus(folder.path(), &late);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let diff = nucleus(folder.path(), &["diff", "drape.mcap", "late.mcap", "--tolerance", "0.1"]);
+    assert_eq!(stdout(&diff).lines().next(), Some("frame 1 is the first that is in `drape.mcap` only"));
+    assert!(!stdout(&diff).contains("first in"), "{}", stdout(&diff));
+}

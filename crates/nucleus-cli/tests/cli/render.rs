@@ -133,3 +133,37 @@ fn a_still_may_have_opacities_a_colour_behind_it_and_coloured_objects() {
     let film = nucleus(folder.path(), &["render", "fall.mcap", "-o", "a.gif", "--background", "none"]);
     assert_refused(&film, "a film has no opacities");
 }
+
+#[test]
+fn a_picture_never_replaces_the_cache_that_it_shows() {
+    let folder = folder();
+    let path = cache(folder.path());
+    let bytes = fs::read(&path).unwrap();
+    fs::copy(&path, folder.path().join("fall.png")).unwrap();
+    let words = "`fall.png` is the file that is read";
+    assert_refused(&nucleus(folder.path(), &["render", "fall.png"]), words);
+    let export = ["export", "fall.mcap", "--as", "foxglove", "-o", "./fall.mcap", "--force"];
+    assert_refused(&nucleus(folder.path(), &export), "`./fall.mcap` is the file that is read");
+    assert!(fs::read(&path).unwrap() == bytes && fs::read(folder.path().join("fall.png")).unwrap() == bytes);
+}
+
+#[test]
+fn an_option_without_effect_is_refused() {
+    let folder = folder();
+    cache(folder.path());
+    for (options, words) in [
+        (&["--tint", "shet=#00ff00"][..], "there is no object `shet`; did you mean `sheet`?"),
+        (&["--frames", "1..4"], "`--frames` is for several frames, and the output is a still: `--animate`"),
+        (&["--every", "2"], "`--every` is for several frames"),
+        (&["--animate", "-o", "a.exr"], "`--animate` is for several frames"),
+        (&["--frame", "2", "-o", "a.gif"], "`--frame` is for a still"),
+        (&["--fov", "50"], "`--fov` is for a camera of `--eye` or `--target`"),
+        (&["--eye", "1,2,3", "--target", "1,2,3"], "`--eye` and `--target` are one point"),
+        (&["--surface"], "`--surface` is for particles, and the cache has none"),
+    ] {
+        let output = nucleus(folder.path(), &[&["render", "fall.mcap"], options].concat());
+        assert_refused(&output, words);
+    }
+    let strain = nucleus(folder.path(), &["render", "fall.mcap", "--strain", "0"]);
+    assert_refused(&strain, "give a number above zero");
+}
