@@ -27,7 +27,9 @@ const STEPS: u64 = 1000;
 /// Progress of a run.
 pub struct RunProgress {
     bar: Option<ProgressBar>,
+    /// Frames to simulate, and the number of the last one.
     frames: u32,
+    last: i64,
     last_line: Instant,
 }
 
@@ -35,16 +37,18 @@ impl RunProgress {
     /// Time between two lines.
     const LINE_EVERY: Duration = Duration::from_secs(5);
 
-    /// Progress of a run with this many frames to simulate.
-    pub fn new(frames: u32) -> Self {
-        let bar = bar(frames.into(), "{wide_bar} frame {pos} of {len}, {eta} left, {msg}");
-        Self { bar, frames, last_line: Instant::now() }
+    /// Progress of a run with this many frames to simulate, up to frame `last`.
+    pub fn new(frames: u32, last: i64) -> Self {
+        let bar = bar(frames.into(), "{wide_bar} {prefix}, {eta} left, {msg}");
+        Self { bar, frames, last, last_line: Instant::now() }
     }
 
     /// Shows the state after a frame.
-    pub fn show(&mut self, statistics: &RunStatistics) {
+    pub fn show(&mut self, frame: i32, statistics: &RunStatistics) {
+        let last = self.last;
         match &self.bar {
             Some(bar) => {
+                bar.set_prefix(format!("frame {frame} of {last}"));
                 bar.set_message(state(statistics));
                 bar.set_position(statistics.frames.into());
             }
@@ -52,8 +56,7 @@ impl RunProgress {
                 self.last_line = Instant::now();
                 let remaining = self.frames.saturating_sub(statistics.frames);
                 let left = (statistics.time / statistics.frames.max(1) * remaining).as_secs();
-                let (frame, frames) = (statistics.frames, self.frames);
-                say!("frame {frame} of {frames}, {left} s left, {}", state(statistics));
+                say!("frame {frame} of {last}, {left} s left, {}", state(statistics));
             }
             None => {}
         }

@@ -24,6 +24,8 @@ pub struct Run<R: Real> {
     pub recorder: Option<Recorder>,
     /// The file of the cache.
     pub out: PathBuf,
+    /// Whether the cache replaces another run's; an interrupted run must not.
+    pub replaces: bool,
     pub judge: Judge,
     /// The statistics of the frames so far.
     pub statistics: RunStatistics,
@@ -43,11 +45,11 @@ impl<R: Real> Run<R> {
     /// # Errors
     /// If the run ended with an error of which `is_refusal` is true.
     pub fn finish(self, is_refusal: impl Fn(&anyhow::Error) -> bool) -> Result<Finished> {
-        let Self { mut simulation, mut recorder, out, mut judge, statistics, start, frames, audit, json } =
-            self;
-        let mut progress = RunProgress::new(frames);
+        let Self { mut simulation, mut recorder, out, replaces, mut judge, statistics, .. } = self;
+        let Self { start, frames, audit, json, .. } = self;
+        let mut progress = RunProgress::new(frames, simulation.frame() + i64::from(frames));
         let mut report = |figures: &FrameStatistics, statistics: &RunStatistics| {
-            progress.show(statistics);
+            progress.show(figures.frame, statistics);
             if json {
                 report_frame(figures, statistics);
             }
@@ -55,7 +57,9 @@ impl<R: Real> Run<R> {
         let (statistics, mut ending) =
             simulate(&mut simulation, &mut recorder, &mut judge, statistics, &mut report)?;
         progress.end();
-        let recorded = close(&simulation, recorder, &mut ending).map(|bytes| (out, bytes));
+        let is_kept = replaces && matches!(ending, Ending::Interrupted | Ending::Stopped(_)) && out.exists();
+        let unfinished = Some(nucleus_cache::part_path(&out)).filter(|part| is_kept && part.exists());
+        let recorded = close(&simulation, recorder, is_kept, &mut ending).map(|bytes| (out, bytes));
         process::files_are_closed();
         match ending {
             Ending::Lost(error) if is_refusal(&error) => return Err(error),
@@ -66,7 +70,8 @@ impl<R: Real> Run<R> {
         let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
         let hash = combined_hash(&simulation);
         let flat = flat_cloths(&simulation);
-        let summary = Summary { hash, statistics, ending, checks, audit, recorded, frames, objects, flat };
+        let summary =
+            Summary { hash, statistics, ending, checks, audit, recorded, unfinished, frames, objects, flat };
         let (outcome, text, report) = (summary.outcome(), summary.as_text()?, summary.as_json());
         Ok(Finished { outcome, text, report })
     }
@@ -205,10 +210,12 @@ impl StepObserver for StopOnSignal<'_> {
     }
 }
 
-/// Closes the cache with a checkpoint of its last frame. Returns its size in bytes, or `None` if it stays unfinished.
+/// Closes the cache with a checkpoint of its last frame. Returns its size in bytes, or `None` if it stays unfinished, as
+/// with `stays_part`.
 fn close<R: Real>(
     simulation: &Simulation<R>,
     recorder: Option<Recorder>,
+    stays_part: bool,
     ending: &mut Ending,
 ) -> Option<u64> {
     let can_finish = |ending: &Ending| match ending {
@@ -226,8 +233,9 @@ fn close<R: Real>(
     };
     let state = state.filter(|_| recorder.final_checkpoint_due());
     let last = state.map_or(Ok(()), |state| recorder.record_checkpoint(&state));
-    match last.and_then(|()| recorder.finish()) {
-        Ok(recorded) => Some(recorded.bytes),
+    let finished = last.and_then(|()| if stays_part { Ok(None) } else { recorder.finish().map(Some) });
+    match finished {
+        Ok(recorded) => recorded.map(|recorded| recorded.bytes),
         Err(error) => {
             *ending = Ending::Lost(error.into());
             None

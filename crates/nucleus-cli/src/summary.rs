@@ -24,6 +24,8 @@ pub struct Summary<'a> {
     pub audit: Option<&'a Audit>,
     /// The cache and its size in bytes, if it is complete.
     pub recorded: Option<(PathBuf, u64)>,
+    /// The file of an interrupted run whose place an older cache keeps.
+    pub unfinished: Option<PathBuf>,
     /// The start frame and the last simulated one.
     pub frames: (i64, i64),
     /// The objects of the run.
@@ -106,6 +108,12 @@ impl Summary<'_> {
             writeln!(text, "{line}")?;
         }
         text += &self.ending_line();
+        if let Some(part) = &self.unfinished {
+            let (part, cache) = (part.display(), part.with_extension(""));
+            let cache = cache.display();
+            writeln!(text, "`{cache}` stays as it was; the unfinished run is `{part}`")?;
+            writeln!(text, "continue it with `nucleus resume {part}`, which then replaces `{cache}`")?;
+        }
         if let Some((path, bytes)) = &self.recorded {
             let (path, size) = (path.display(), figures::bytes(*bytes));
             writeln!(text, "recorded in `{path}` ({size})")?;
@@ -179,6 +187,7 @@ impl Summary<'_> {
             "checks": checks,
             "audit": self.audit.map(audit_json),
             "cache": path,
+            "unfinished": self.unfinished.as_ref().map(|part| part.display().to_string()),
             "bytes": bytes,
         }})
     }

@@ -153,7 +153,18 @@ impl Resume {
         let frames = end.abs_diff(copied);
         let recorder = Some(recorder);
         let (audit, json) = (false, self.json);
-        let run = run_loop::Run { simulation, recorder, out, judge, statistics, start, frames, audit, json };
+        let run = run_loop::Run {
+            simulation,
+            recorder,
+            out,
+            replaces,
+            judge,
+            statistics,
+            start,
+            frames,
+            audit,
+            json,
+        };
         let is_refusal = |error: &anyhow::Error| {
             matches!(
                 error.downcast_ref(),

@@ -30,8 +30,9 @@ const CHECKPOINT: u32 = 48;
 
 /// Simulates a scene and records it as a cache.
 ///
-/// Ctrl-C drops the unfinished frame, closes the cache after the previous one and exits with 130. A second Ctrl-C ends the
-/// process at once; the unfinished cache then plays to its last complete frame. `nucleus resume` continues after either.
+/// Ctrl-C drops the unfinished frame, closes the cache after the previous one and exits with 130; with --force an existing
+/// cache stays, and the unfinished one keeps the name with `.part`. A second Ctrl-C ends the process at once; the unfinished
+/// cache then plays to its last complete frame. `nucleus resume` continues after either.
 #[derive(Debug, Args)]
 pub struct Run {
     /// The scene (.ron), or a Maya scene (.ma), which is first imported beside the cache.
@@ -192,7 +193,19 @@ impl Run {
         let recorder = recording::begin(&simulation, options, &out, (&self.scene, text))?;
         let (statistics, frames) = (RunStatistics::default(), end.abs_diff(start));
         let (audit, json) = (self.audit, self.json);
-        let run = run_loop::Run { simulation, recorder, out, judge, statistics, start, frames, audit, json };
+        let replaces = self.force;
+        let run = run_loop::Run {
+            simulation,
+            recorder,
+            out,
+            replaces,
+            judge,
+            statistics,
+            start,
+            frames,
+            audit,
+            json,
+        };
         run.finish(|_| false).map(Some)
     }
 

@@ -12,13 +12,13 @@ use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
 
 /// A run of a million frames that has recorded at least four.
 fn long_run(folder: &Path) -> Child {
-    started(Command::new(env!("CARGO_BIN_EXE_nucleus")), folder)
+    started(Command::new(env!("CARGO_BIN_EXE_nucleus")), folder, &[])
 }
 
 /// The same as the child of a given command, to which the arguments are added.
-fn started(mut run: Command, folder: &Path) -> Child {
+fn started(mut run: Command, folder: &Path, options: &[&str]) -> Child {
     scene(folder, 1_000_000, "");
-    run.args(["run", "drape.ron", "--threads", "1"]).current_dir(folder);
+    run.args(["run", "drape.ron", "--threads", "1"]).args(options).current_dir(folder);
     let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let begin = Instant::now();
     // An unfinished cache can be read.
@@ -77,12 +77,34 @@ fn an_interrupted_run_closes_its_cache_and_says_so() {
 }
 
 #[test]
+fn an_interrupted_run_does_not_replace_a_complete_cache() {
+    let folder = folder();
+    scene(folder.path(), 5, "");
+    assert_eq!(nucleus(folder.path(), &["run", "drape.ron"]).status.code(), Some(0));
+    let complete = std::fs::read(folder.path().join("drape.mcap")).unwrap();
+    let run = started(Command::new(env!("CARGO_BIN_EXE_nucleus")), folder.path(), &["--force"]);
+    signal(&run, "INT");
+    let output = run.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    let said = stdout(&output);
+    assert!(said.contains("`drape.mcap` stays as it was"), "{said}");
+    assert!(said.contains("continue it with `nucleus resume drape.mcap.part`"), "{said}");
+    assert!(complete == std::fs::read(folder.path().join("drape.mcap")).unwrap());
+    let recorded = Playback::open(folder.path().join("drape.mcap.part")).unwrap().time_samples().len();
+    let to = recorded.max(5).to_string();
+    let resumed = nucleus(folder.path(), &["resume", "drape.mcap.part", "--to", &to]);
+    assert_eq!(resumed.status.code(), Some(0), "{}", stderr(&resumed));
+    let whole = Playback::open(folder.path().join("drape.mcap")).unwrap();
+    assert_eq!((whole.time_samples().len(), whole.corruption().is_intact()), (recorded.max(5), true));
+}
+
+#[test]
 #[cfg(target_os = "linux")]
 fn a_run_below_nohup_outlives_its_terminal() {
     let folder = folder();
     let mut command = Command::new("nohup");
     command.arg(env!("CARGO_BIN_EXE_nucleus"));
-    let run = started(command, folder.path());
+    let run = started(command, folder.path(), &[]);
     let frames = || {
         let part = Playback::open(folder.path().join("drape.mcap.part"));
         part.map_or(0, |cache| cache.time_samples().len())
