@@ -44,6 +44,11 @@ impl Summary<'_> {
         }
     }
 
+    /// Whether a check has a result: a run that ended early says nothing about later frames.
+    fn is_evaluated(&self, outcome: &checks::Outcome) -> bool {
+        outcome.worst.is_some() || matches!(self.ending, Ending::Done)
+    }
+
     fn is_clean(&self) -> bool {
         self.audit.is_none_or(|audit| audit.account().is_clean())
             && self.checks.iter().all(|check| check.passed)
@@ -77,7 +82,9 @@ impl Summary<'_> {
         }
         if let Some((gap, frame)) = statistics.smallest_gap {
             match gap < checks::MAX_MEASURED_GAP {
-                true => writeln!(text, "minimum gap {} of the thickness, at frame {frame}", figures::number(gap))?,
+                true => {
+                    writeln!(text, "minimum gap {} of the thickness, at frame {frame}", figures::number(gap))?
+                }
                 false => writeln!(text, "minimum gap at least the thickness; larger gaps are not measured")?,
             }
         }
@@ -98,7 +105,7 @@ impl Summary<'_> {
             writeln!(text, "frame {frame}: {} ({count} sanitized in all)", sanitized(input, self.objects))?;
         }
         for outcome in self.checks {
-            writeln!(text, "{}", check_line(outcome))?;
+            writeln!(text, "{}", check_line(outcome, self.is_evaluated(outcome)))?;
         }
         self.audit.into_iter().for_each(|audit| text += &audit_lines(audit));
         let tolerated = warnings::tolerated(statistics, self.checks);
@@ -152,7 +159,8 @@ impl Summary<'_> {
             .iter()
             .map(|outcome| {
                 let (figure, frame) = outcome.worst.unzip();
-                json!({ "check": outcome.check.to_string(), "passed": outcome.passed, "figure": figure, "frame": frame })
+                let passed = self.is_evaluated(outcome).then_some(outcome.passed);
+                json!({ "check": outcome.check.to_string(), "passed": passed, "figure": figure, "frame": frame })
             })
             .collect();
         let (path, bytes) =
@@ -249,8 +257,11 @@ fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
 }
 
 /// `check maxStretch(0.02): failed with 0.031 at frame 48`.
-fn check_line(outcome: &checks::Outcome) -> String {
+fn check_line(outcome: &checks::Outcome, is_evaluated: bool) -> String {
     let check = &outcome.check;
+    if !is_evaluated {
+        return format!("check {check}: not evaluated, the run ended before");
+    }
     let verdict = if outcome.passed { "passed" } else { "FAILED" };
     let side = match check.limit() {
         (Bound::AtMost, limit) => format!("at most {}", figures::number(limit)),

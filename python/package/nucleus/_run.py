@@ -49,7 +49,7 @@ def problems_of(report: Mapping[str, Any]) -> list[str]:
     """What is wrong with a run, in words."""
     found = [] if report.get("ending") in ("done", "interrupted") else [f"the run ended early: {report.get('ending')}"]
     for check in report.get("checks") or []:
-        if not check["passed"]:
+        if check["passed"] is False:
             found.append(f"check {check['check']} failed with {check['figure']} at frame {check['frame']}")
     return [*found, *(report.get("unresolved_contact") or [])]
 

@@ -157,3 +157,46 @@ fn invalid_option_values_are_refused() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
 }
+
+#[test]
+fn a_cache_with_the_name_of_a_picture_is_refused() {
+    let folder = folder();
+    scene(folder.path(), 2, "");
+    let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "drape.png"]);
+    assert_refused(&output, "`drape.png` does not end with .mcap");
+    assert!(stderr(&output).contains("write `-o drape.mcap`"), "{}", stderr(&output));
+    assert!(!folder.path().join("drape.png").exists());
+}
+
+/// Limits the size of files that the command writes, as a full disk does.
+#[cfg(target_os = "linux")]
+fn within_blocks(folder: &std::path::Path, blocks: u32, arguments: &str) -> std::process::Output {
+    let command = format!("ulimit -f {blocks}; exec {} {arguments}", env!("CARGO_BIN_EXE_nucleus"));
+    std::process::Command::new("bash").args(["-c", &command]).current_dir(folder).output().unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_check_of_frames_that_a_full_disk_prevents_is_not_evaluated() {
+    let folder = folder();
+    scene(folder.path(), 400, "atRestBy(frame: 390, speed: 0.1)");
+    let output = within_blocks(folder.path(), 40, "run drape.ron");
+    let said = stdout(&output);
+    assert_eq!(output.status.code(), Some(1), "{said}{}", stderr(&output));
+    assert!(said.contains("atRestBy(frame: 390, speed: 0.1): not evaluated, the run ended before"), "{said}");
+    assert!(!said.contains("FAILED"), "{said}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_a_problem_and_no_wrong_command() {
+    let folder = folder();
+    scene(folder.path(), 60, "");
+    assert_eq!(nucleus(folder.path(), &["run", "drape.ron"]).status.code(), Some(0));
+    for command in ["export drape.mcap -o a.usda", "render drape.mcap -o a.png", "render drape.mcap -o a.exr"]
+    {
+        let output = within_blocks(folder.path(), 2, command);
+        assert_eq!(output.status.code(), Some(1), "{command}: {}", stderr(&output));
+    }
+    assert_eq!(nucleus(folder.path(), &["render", "no.mcap"]).status.code(), Some(2));
+}
