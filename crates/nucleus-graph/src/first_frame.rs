@@ -51,7 +51,7 @@ fn warn_of_gravity(scene: &Scene, nucleus: &NucleusProgram, input: &FrameInput, 
         return;
     }
     let name = scene.graph.node(nucleus.node()).name();
-    let message = format!("`gravity` of `{name}` is {gravity} m/s²; that of the Earth is 9.8");
+    let message = format!("`gravity` of `{name}` has a strength of {gravity} m/s²; that of the Earth is 9.8");
     let warning = findings.warning(&scene.source.place(&format!("{name}.gravity")), message);
     warning
         .help("gravity is in m/s² whatever the unit of length: leave it at 9.8 and set `spaceScale: 0.01` for centimetres");
@@ -325,7 +325,10 @@ mod tests {
     #[test]
     fn gravity_in_centimetres_is_named() {
         let found = warnings(&sheet("gravity: 980", METRE, ""));
-        assert_eq!(found[0].0, "`gravity` of `nucleus1` is 980 m/s²; that of the Earth is 9.8");
+        assert_eq!(
+            found[0].0,
+            "`gravity` of `nucleus1` has a strength of 980 m/s²; that of the Earth is 9.8"
+        );
         assert!(found[0].1.contains("`spaceScale: 0.01`"));
     }
 
