@@ -16,6 +16,10 @@ pub fn error(text: &str) -> Result<f64, String> {
         None => (text, 1.0),
     };
     match number.trim().parse::<f64>() {
+        // Above 1 the percent sign was most likely forgotten.
+        Ok(x) if x > 1.0 && x.is_finite() && scale == 1.0 => {
+            Err(format!("{x} means {} %: write `{x}%`", 100.0 * x))
+        }
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x * scale),
         Ok(_) => Err("an error must be above 0".to_owned()),
         Err(_) => Err("write an error as `1%` or `0.01`".to_owned()),
@@ -92,6 +96,8 @@ mod tests {
     fn errors_are_percent_or_shares_and_times_milliseconds_or_seconds() {
         assert_eq!([error("1%"), error(" 0.5 % "), error("0.01")], [Ok(0.01), Ok(0.005), Ok(0.01)]);
         assert_eq!([time("30ms"), time("30"), time("0.5s")], [Ok(30.0), Ok(30.0), Ok(500.0)]);
+        assert_eq!(error("2").unwrap_err(), "2 means 200 %: write `2%`");
+        assert_eq!([error("1"), error("150%")], [Ok(1.0), Ok(1.5)]);
         for text in ["0%", "-1%", "nan", "inf", "much", ""] {
             assert!(error(text).is_err() && time(text).is_err(), "{text}");
         }

@@ -292,3 +292,41 @@ fn a_sweep_as_runs_of_plans_has_the_bits_of_one_process() {
     let rerun = nucleus(many.path(), &[&planned[..], &["--rerun"]].concat());
     assert!(stderr(&rerun).contains("name another folder"), "{}", stderr(&rerun));
 }
+
+#[test]
+fn a_later_sweep_keeps_the_settings_of_an_earlier_one_for_run_quality() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let evaluations = |list: &str| {
+        let sweep = ["trade", "drape.ron", "--evaluations", list, "--substeps", "1", "--frames", "8"];
+        let output = nucleus(folder.path(), &sweep);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let all = fs::read_dir(folder.path().join("kept").join("trade")).unwrap();
+        let curves: Vec<_> = all.map(|entry| entry.unwrap().path().join("trade.json")).collect();
+        let [curve] = &curves[..] else { panic!("{curves:?}") };
+        let curve: serde_json::Value = serde_json::from_str(&fs::read_to_string(curve).unwrap()).unwrap();
+        let mut found: Vec<f64> = curve["points"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|point| point["setting"]["evaluations"].as_f64().unwrap())
+            .collect();
+        found.sort_by(f64::total_cmp);
+        found.dedup();
+        found
+    };
+    let both = evaluations("6,12");
+    assert!(both.contains(&6.0) && both.contains(&12.0), "{both:?}");
+    assert_eq!(evaluations("12"), both);
+}
+
+#[test]
+fn an_error_without_its_percent_sign_is_refused() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    for arguments in [["trade", "drape.ron", "--error", "2"], ["run", "drape.ron", "--quality", "2"]] {
+        let output = nucleus(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("2 means 200 %: write `2%`"), "{}", stderr(&output));
+    }
+}

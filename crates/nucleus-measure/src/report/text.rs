@@ -117,10 +117,12 @@ fn reason(trade: &Trade, wish: &Wish, chosen: &Point) -> Option<String> {
     }
 }
 
-/// `stretch (6 %), energy (2 %)`: the quantities in which a setting misses a request.
+/// `stretch (6 % ± 0.5 %), energy (2 % ± 0.1 %)`: the quantities in which a setting misses a request, with the noise of the
+/// references, which counts as error.
 fn misses(request: &Request, point: &Point) -> String {
     let missed = request.missed(&point.errors);
-    let all: Vec<String> = missed.map(|c| format!("{} ({})", c.quantity.name(), percent(c.error))).collect();
+    let one = |c: &Component| format!("{} ({} ± {})", c.quantity.name(), percent(c.error), percent(c.floor));
+    let all: Vec<String> = missed.map(one).collect();
     if all.is_empty() { "nothing".to_owned() } else { all.join(", ") }
 }
 

@@ -211,15 +211,13 @@ impl Request {
     }
 
     /// The components of a run that miss the request. The noise of the references counts as error, because against
-    /// other references the error may be larger by it. Where the references do not resolve the wanted error, an
-    /// error within their noise misses nothing.
+    /// other references the error may be larger by it. An error within their noise misses nothing. A run that meets an
+    /// error therefore meets every larger one.
     pub fn missed<'a>(&'a self, errors: &'a [Component]) -> impl Iterator<Item = &'a Component> {
         errors.iter().filter(|component| {
             let Component { error, floor, .. } = **component;
-            self.of(component.quantity).is_some_and(|wanted| match 2.0 * floor > wanted {
-                true => component.is_resolved(),
-                false => error + floor > wanted,
-            })
+            let misses = |wanted| component.is_resolved() && error + floor > wanted;
+            self.of(component.quantity).is_some_and(misses)
         })
     }
 
@@ -281,6 +279,17 @@ pub(super) mod tests {
         let bounded = Request { every: None, bounds: vec![(Quantity::WorstStretch, 0.01)] };
         assert!(bounded.is_unresolved(&measure), "a bound that was asked for does");
         assert!(Request::every(1e-3).is_unresolved(&measure));
+    }
+
+    #[test]
+    fn a_run_that_meets_an_error_meets_every_larger_one() {
+        for error in [0.001, 0.0135, 0.018, 0.019, 0.03] {
+            let shape = [Component { quantity: Quantity::Shape, error, floor: 0.009 }];
+            let is_met = |wanted: &f64| Request::every(*wanted).missed(&shape).next().is_none();
+            let wanted: Vec<f64> = (1..60).map(|k| 0.001 * f64::from(k)).collect();
+            let met: Vec<bool> = wanted.iter().map(is_met).collect();
+            assert!(met.is_sorted(), "an error of {error}: {met:?}");
+        }
     }
 
     #[test]

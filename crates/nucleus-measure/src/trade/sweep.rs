@@ -132,7 +132,8 @@ pub fn run_sweep(
         if finer.peek().is_some() && references.is_some() && is_missed {
             continue;
         }
-        trade.save(cache)?;
+        let stored = with_stored(benchmark, &runs, references.as_ref(), cache)?;
+        Trade::new(benchmark, &stored, references.as_ref()).save(cache)?;
         return Ok(SweepResult { trade, references, runs });
     }
 }
@@ -142,6 +143,28 @@ fn resolves(benchmark: &Benchmark, references: &References, wish: &Wish) -> bool
     let References { coarse, fine, horizon } = references;
     let measure = ErrorMeasure::new(benchmark, coarse, fine, horizon);
     horizon.is_usable() && !wish.request().is_unresolved(&measure)
+}
+
+/// The runs of a sweep with those of earlier sweeps against the same reference: `nucleus run --quality` chooses from all.
+fn with_stored(
+    benchmark: &Benchmark,
+    runs: &[Run],
+    references: Option<&References>,
+    cache: &ResultCache,
+) -> Result<Vec<Run>, TradeError> {
+    let (against, mut all) = (reference_key(references), runs.to_vec());
+    for run in cache.list::<Run>(LIST)? {
+        let is_comparable = run.against == against && run.key() == key(&run.setting, 32, benchmark.frames());
+        if is_comparable && all.iter().all(|other| other.key() != run.key()) {
+            all.push(run);
+        }
+    }
+    Ok(all)
+}
+
+/// The name of the reference that runs are measured against; empty without one.
+fn reference_key(references: Option<&References>) -> String {
+    references.map(|both| both.fine.run.key()).unwrap_or_default()
 }
 
 /// Adds the runs of settings to `runs`, loaded or done.
@@ -156,7 +179,7 @@ fn run_settings(
 ) -> Result<(), TradeError> {
     let known: Vec<Run> = cache.list(LIST)?;
     // A stored run holds its distances from the reference of its sweep, which may have been another.
-    let against = references.map(|both| both.fine.run.key()).unwrap_or_default();
+    let against = reference_key(references);
     let frames = benchmark.frames();
     let mut tasks = Vec::new();
     for setting in settings {
