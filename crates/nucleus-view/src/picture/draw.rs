@@ -1,7 +1,7 @@
 //! The stages of one picture: geometry, lights, visibility, shading, legend.
 
 use super::camera::{Camera, View};
-use super::floor::Floor;
+use super::floor::{Floor, FloorPlane};
 use super::image::Image;
 use super::light::{Light, diffuse, fill, smoothstep};
 use super::mesh::Mesh;
@@ -33,8 +33,8 @@ pub(super) fn draw_with(
     visibility::draw(&mesh, &view, fragments);
     let is_transparent = style.background == Background::Transparent;
     // Seen from below, a floor would hide the scene.
-    let is_seen = |height: &f32| !is_transparent && *height <= view.eye.y;
-    let floor = floor_height(objects, style.ground).filter(is_seen);
+    let is_seen = |plane: &FloorPlane| !is_transparent && plane.height_of(&view.eye) >= 0.0;
+    let floor = floor_plane(objects, style.ground).filter(is_seen);
     let options = Options {
         floor,
         wireframe: style.wireframe,
@@ -49,18 +49,20 @@ pub(super) fn draw_with(
     image
 }
 
-/// The height of the floor in scene units, if there is one.
-fn floor_height(objects: &[Object], ground: Ground) -> Option<f32> {
-    let height = match ground {
+/// The plane of the floor, if there is one.
+fn floor_plane(objects: &[Object], ground: Ground) -> Option<FloorPlane> {
+    let plane = match ground {
         Ground::None => return None,
-        Ground::At(height) => height,
+        Ground::At(height) => FloorPlane::level(height),
+        Ground::Plane { origin, normal } => is_drawable(&normal)
+            .then(|| FloorPlane { origin: origin.into(), normal: unit(&normal.into()) })?,
         Ground::Below => {
             let mut all = Bounds::default();
             objects.iter().for_each(|object| all.include(object.positions));
-            all.floor_below(&Bounds::of_interest(objects))
+            FloorPlane::level(all.floor_below(&Bounds::to_frame(objects), &Bounds::of_interest(objects)))
         }
     };
-    is_drawable(&[height; 3]).then_some(height)
+    is_drawable(&plane.origin.into()).then_some(plane)
 }
 
 const BACKGROUND_TOP: [f32; 3] = [0.80, 0.82, 0.84];
@@ -72,8 +74,7 @@ const BACK: f32 = 0.72;
 /// Options of the shading.
 #[derive(Debug, Clone, Copy)]
 struct Options {
-    /// Height of the floor, in scene units.
-    floor: Option<f32>,
+    floor: Option<FloorPlane>,
     wireframe: bool,
     /// Samples along each side of a pixel.
     samples: u32,
@@ -90,7 +91,7 @@ fn shade(mesh: &Mesh, fragments: &[Fragment], view: &View, light: &Light, option
         view,
         light,
         key: Light::key_direction(view),
-        floor: options.floor.map(|height| Floor::new(height, view, light)),
+        floor: options.floor.map(|plane| Floor::new(plane, view, light)),
         background: options.background,
         samples,
         // A line has the same width in pixels for any number of samples.

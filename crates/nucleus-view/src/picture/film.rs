@@ -16,7 +16,7 @@ use crate::error::ViewError;
 
 /// A run as pictures with one camera and one floor, so that nothing moves but the objects.
 ///
-/// The floor is the ground plane of the scene where the cache has a level one; it moves with the plane.
+/// The floor is the ground plane of the scene where the cache has one; it moves with the plane.
 ///
 /// ```no_run
 /// use nucleus_view::{Film, Style};
@@ -59,7 +59,11 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         if moments.is_empty() {
             return Err(ViewError::NoRecordedFrame);
         }
-        let Survey { framed, stage, floor } = survey(cache, &moments)?;
+        // The last frame is often that of a still.
+        let last = cache.time_samples().len() - 1;
+        let surveyed: Vec<usize> =
+            moments.iter().copied().filter(|&moment| moment != last).chain([last]).collect();
+        let Survey { framed, stage, floor } = survey(cache, &surveyed)?;
         let camera = Camera::framing(&framed, style.size);
         let is_ground_plane = style.ground == Ground::Below;
         let ground = if is_ground_plane { floor } else { style.ground };
@@ -101,14 +105,6 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         self.camera
     }
 
-    /// A camera that frames the cloth and the colliders near it at one recorded time, by its index in the cache.
-    ///
-    /// # Errors
-    /// If the index is out of range, or the frame is damaged.
-    pub fn framing(&mut self, moment: usize) -> Result<Camera, ViewError> {
-        Ok(Camera::framing(&self.bounds(moment)?, self.style.size))
-    }
-
     /// The box around the cloth and the colliders near it at one recorded time, by its index in the cache.
     ///
     /// # Errors
@@ -133,15 +129,16 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         Self { scene_camera: Some(camera), ..self }
     }
 
-    /// The floor at a recorded time: the ground plane if there is a level one. The floor is horizontal, so an inclined
-    /// plane cannot be drawn.
+    /// The floor at a recorded time: the ground plane, if there is one.
     fn ground_at(&self, moment: usize) -> Ground {
         let (run, moments) = (self.cache.run(), self.cache.time_samples());
         let frame =
             moments.get(moment).map(|moment| f64::from(run.start) + moment.time * run.frames_per_second);
         let plane = frame.filter(|_| self.is_ground_plane).and_then(|frame| run.ground_at(frame));
-        let level = plane.filter(|plane| plane.normal[1] > 0.999 * norm(plane.normal));
-        level.map_or(self.style.ground, |plane| Ground::At(plane.origin[1] as f32))
+        plane.map_or(self.style.ground, |plane| Ground::Plane {
+            origin: plane.origin.map(|x| x as f32),
+            normal: plane.normal.map(|x| x as f32),
+        })
     }
 
     /// The camera at a recorded time. Within a frame, the pose of a camera of the scene is interpolated linearly.
@@ -221,11 +218,7 @@ fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<
         stage.merge(&Bounds::of_interest(&objects));
         objects.iter().for_each(|object| all.include(object.positions));
     }
-    Ok(Survey { framed, stage, floor: Ground::At(all.floor_below(&stage)) })
-}
-
-fn norm(vector: [f64; 3]) -> f64 {
-    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+    Ok(Survey { framed, stage, floor: Ground::At(all.floor_below(&framed, &stage)) })
 }
 
 /// An object at a recorded time.

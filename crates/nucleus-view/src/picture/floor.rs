@@ -1,8 +1,8 @@
-//! The floor: a horizontal plane with a grid, which receives shadows and fades into the background.
+//! The floor: a plane with a grid, level or tilted, which receives shadows and fades into the background.
 
 use super::camera::View;
 use super::light::{Light, diffuse, on_all_cores, smoothstep};
-use super::scene::Vec3;
+use super::scene::{Vec3, unit};
 
 /// Points along a side of the grid on which the visible fraction of the sky is sampled; it varies slowly between them.
 const SIDE: usize = 80;
@@ -12,9 +12,32 @@ const FLOOR: [f32; 3] = [0.545, 0.54, 0.53];
 /// Factor on the colour of grid lines.
 const LINE_DARKER: f32 = 0.86;
 
+/// The plane of a floor, in scene units.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FloorPlane {
+    pub origin: Vec3,
+    /// Unit vector to the side of the objects.
+    pub normal: Vec3,
+}
+
+impl FloorPlane {
+    /// A level plane at a height.
+    pub fn level(height: f32) -> Self {
+        Self { origin: Vec3::new(0.0, height, 0.0), normal: Vec3::y() }
+    }
+
+    /// How far a point is above the plane.
+    pub fn height_of(&self, point: &Vec3) -> f32 {
+        (point - self.origin).dot(&self.normal)
+    }
+}
+
 /// A floor, prepared for one view from above.
 pub(super) struct Floor {
-    height: f32,
+    plane: FloorPlane,
+    /// Directions of the grid lines in the plane: X and Z where it is level.
+    across: Vec3,
+    along: Vec3,
     centre: Vec3,
     half_extent: f32,
     /// Distance between grid lines, in scene units.
@@ -26,16 +49,22 @@ pub(super) struct Floor {
 }
 
 impl Floor {
-    /// A floor at `height` in scene units, shaded by the objects around the target of the camera.
-    pub fn new(height: f32, view: &View, light: &Light) -> Self {
+    /// A floor that is shaded by the objects around the target of the camera.
+    pub fn new(plane: FloorPlane, view: &View, light: &Light) -> Self {
         let half_extent = view.half_extent() * 1.3;
-        let centre = Vec3::new(view.target.x, height, view.target.z);
+        let normal = plane.normal;
+        let centre = view.target - normal * plane.height_of(&view.target);
+        let toward = if normal.x.abs() < 0.9 { Vec3::x() } else { Vec3::z() };
+        let across = unit(&(toward - normal * toward.dot(&normal)));
+        let along = across.cross(&normal);
         let at = |cell: usize| (cell as f32 / (SIDE - 1) as f32 * 2.0 - 1.0) * half_extent;
         let places: Vec<Vec3> =
-            (0..SIDE * SIDE).map(|k| centre + Vec3::new(at(k % SIDE), 0.0, at(k / SIDE))).collect();
-        let sky = on_all_cores(&places, |place| light.sky_visibility(place, &Vec3::y()));
+            (0..SIDE * SIDE).map(|k| centre + across * at(k % SIDE) + along * at(k / SIDE)).collect();
+        let sky = on_all_cores(&places, |place| light.sky_visibility(place, &normal));
         Self {
-            height,
+            plane,
+            across,
+            along,
             centre,
             half_extent,
             spacing: round_length(view.half_extent() / 6.0),
@@ -46,13 +75,14 @@ impl Floor {
 
     /// Whether the floor hides a point that is more than `slack` below it.
     pub fn hides(&self, point: &Vec3, slack: f32) -> bool {
-        point.y < self.height - slack
+        self.plane.height_of(point) < -slack
     }
 
     /// The linear colour of the floor along a ray from the eye, and its opacity, 0 to 1; `None` where the ray misses it.
     /// Lines are filtered over a square of `samples` samples of the view to each side.
     pub fn shade(&self, view: &View, ray: &Vec3, samples: f32, light: &Light) -> Option<(Vec3, f32)> {
-        let depth = (self.height - view.eye.y) / ray.y;
+        let normal = &self.plane.normal;
+        let depth = -self.plane.height_of(&view.eye) / ray.dot(normal);
         if !depth.is_finite() || depth <= 0.0 {
             return None;
         }
@@ -63,19 +93,19 @@ impl Floor {
             return None;
         }
         let near = 1.0 - smoothstep(0.75, 1.0, far); // shading fades out before the shadow maps end
-        let key = 1.0 - near * (1.0 - light.key_visibility(&point, &Vec3::y()));
+        let key = 1.0 - near * (1.0 - light.key_visibility(&point, normal));
         let sky = 1.0 - near * (1.0 - self.sky_visibility(&point));
         let length = ray.norm();
-        let width = samples * depth / view.scale * length / (ray.y.abs() / length).max(0.05);
+        let width = samples * depth / view.scale * length / (ray.dot(normal).abs() / length).max(0.05);
         let lines = self.lines(&point, width) * (1.0 - smoothstep(0.4, 1.6, far));
         let colour = Vec3::from(FLOOR) * (1.0 - lines * (1.0 - LINE_DARKER));
-        Some((diffuse(&colour, &Vec3::y(), key, sky, &self.key), opacity))
+        Some((diffuse(&colour, normal, key, sky, &self.key), opacity))
     }
 
     fn sky_visibility(&self, point: &Vec3) -> f32 {
         let at = |x: f32| (x / self.half_extent * 0.5 + 0.5).clamp(0.0, 1.0) * (SIDE - 1) as f32;
         let offset = point - self.centre;
-        let (x, z) = (at(offset.x), at(offset.z));
+        let (x, z) = (at(offset.dot(&self.across)), at(offset.dot(&self.along)));
         let (column, row) = ((x as usize).min(SIDE - 2), (z as usize).min(SIDE - 2));
         let (right, down) = (x - column as f32, z - row as f32);
         let cell = |across: usize, below: usize| self.sky[(row + below) * SIDE + column + across];
@@ -91,7 +121,8 @@ impl Floor {
             let from_line = (x / self.spacing - (x / self.spacing).round()).abs() * self.spacing;
             (1.0 - from_line / thick).clamp(0.0, 1.0)
         };
-        cover(point.x).max(cover(point.z)) * (self.spacing / (width * 12.0)).min(1.0)
+        cover(point.dot(&self.across)).max(cover(point.dot(&self.along)))
+            * (self.spacing / (width * 12.0)).min(1.0)
     }
 }
 

@@ -85,15 +85,22 @@ pub enum Background {
     Transparent,
 }
 
-/// The floor of a picture, a horizontal plane. It casts no shadow.
+/// The floor of a picture, a plane. It casts no shadow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ground {
     /// No floor.
     None,
     /// Below all objects.
     Below,
-    /// At this height, in scene units.
+    /// Level, at this height, in scene units.
     At(f32),
+    /// Through a point, in scene units; objects are on the side of the normal.
+    Plane {
+        /// The point.
+        origin: [f32; 3],
+        /// The normal, of any length.
+        normal: [f32; 3],
+    },
 }
 
 /// The quantity that the colour of a cloth shows.
@@ -140,8 +147,8 @@ impl Bounds {
 
     /// The box that an automatic camera frames: the simulated objects, and the colliders near them.
     ///
-    /// A collider counts up to half the extent of the simulated objects beside them. A collider of more than three times
-    /// their extent, such as a landscape, does not count.
+    /// A collider counts if it comes within half the extent of the simulated objects beside them. A collider of more than
+    /// three times their extent, such as a landscape, does not count.
     pub fn to_frame(objects: &[Object]) -> Self {
         let simulated = Self::of_interest(objects);
         let (extent, near) = (simulated.extent(), simulated.grown(0.5 * simulated.extent()));
@@ -149,8 +156,8 @@ impl Bounds {
         for object in objects.iter().filter(|object| object.kind == Kind::Collider) {
             let mut collider = Self::default();
             collider.include(object.positions);
-            if collider.extent() <= 3.0 * extent {
-                framed.merge(&collider.intersection(&near));
+            if collider.extent() <= 3.0 * extent && !collider.intersection(&near).is_empty() {
+                framed.merge(&collider);
             }
         }
         framed
@@ -178,12 +185,13 @@ impl Bounds {
         (0..3).any(|axis| self.low[axis] > self.high[axis])
     }
 
-    /// The height of a floor below all objects, but not far below those of interest: a collider may be a landscape.
-    pub(super) fn floor_below(&self, interest: &Self) -> f32 {
-        if self.is_empty() || interest.is_empty() {
+    /// The height of a floor below all objects: below those that a camera frames, but not far below the simulated ones, since
+    /// another collider may be a landscape.
+    pub(super) fn floor_below(&self, framed: &Self, simulated: &Self) -> f32 {
+        if self.is_empty() || framed.is_empty() || simulated.is_empty() {
             return 0.0;
         }
-        self.low[1].max(interest.low[1] - 1.5 * interest.extent())
+        self.low[1].max(simulated.low[1] - 1.5 * simulated.extent()).min(framed.low[1])
     }
 
     /// The longest side; 0 if empty.
@@ -256,6 +264,26 @@ mod tests {
         assert_eq!(framed(&colliders[1..2]), alone, "a landscape");
         assert_eq!(framed(&colliders[2..]), alone, "far away");
         let table = [cube([0.0, -1.5, 0.0], 2.5)];
-        assert_eq!(framed(&table), Bounds { low: [-2.0; 3], high: [2.0, 1.0, 2.0] }, "as far as it is near");
+        assert_eq!(
+            framed(&table),
+            Bounds { low: [-2.5, -4.0, -2.5], high: [2.5, 1.0, 2.5] },
+            "a whole table"
+        );
+    }
+
+    #[test]
+    fn the_floor_is_below_the_colliders_that_are_framed() {
+        let faces = Faces::default();
+        let floor = |cloth: &[[f32; 3]], collider: &[[f32; 3]]| {
+            let objects = [object(Kind::Cloth, &faces, cloth), object(Kind::Collider, &faces, collider)];
+            let mut all = Bounds::default();
+            objects.iter().for_each(|object| all.include(object.positions));
+            all.floor_below(&Bounds::to_frame(&objects), &Bounds::of_interest(&objects))
+        };
+        let scarf = cube([0.0, 176.0, 0.0], 30.0);
+        let column: Vec<[f32; 3]> = vec![[-15.0, 0.0, -15.0], [15.0, 170.0, 15.0]];
+        assert_eq!(floor(&scarf, &column), 0.0);
+        let valley = cube([0.0, -900.0, 0.0], 500.0);
+        assert_eq!(floor(&scarf, &valley), 146.0 - 90.0, "a landscape");
     }
 }

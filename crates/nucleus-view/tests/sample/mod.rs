@@ -41,6 +41,8 @@ pub struct Sample {
     pub selected: bool,
     /// Height of a ground plane.
     pub plane: Option<f64>,
+    /// The X component of its normal, whose Y component is 1.
+    pub tilt: f64,
     /// The plane rises by this in each frame.
     pub rise: f64,
 }
@@ -66,9 +68,11 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
         end: FRAMES,
         contacts: sample.contacts,
         selections: if sample.selected { vec![hoist()] } else { Vec::new() },
-        ground: sample.plane.map(plane),
+        ground: sample.plane.map(|y| plane(y, sample.tilt)),
         ground_motion: match sample.plane.filter(|_| sample.rise != 0.0) {
-            Some(y) => (0..FRAMES).map(|frame| plane(y + sample.rise * f64::from(frame))).collect(),
+            Some(y) => {
+                (0..FRAMES).map(|frame| plane(y + sample.rise * f64::from(frame), sample.tilt)).collect()
+            }
             None => Vec::new(),
         },
         detail: if sample.substeps { Detail::Substeps } else { Detail::Frames },
@@ -80,8 +84,8 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
     recorder
 }
 
-fn plane(y: f64) -> Plane {
-    Plane { origin: [0.0, y, 0.0], normal: [0.0, 1.0, 0.0] }
+fn plane(y: f64, tilt: f64) -> Plane {
+    Plane { origin: [0.0, y, 0.0], normal: [tilt, 1.0, 0.0] }
 }
 
 /// A camera that approaches the flag.
