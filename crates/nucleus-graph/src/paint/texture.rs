@@ -148,7 +148,10 @@ mod tests {
     #[test]
     fn coordinates_on_a_border_sample_the_pixels_of_that_border() {
         let texture = Texture::of(2, vec![0.0, 1.0, 0.25, 0.5]);
-        assert_eq!([[0.0, 1.0], [1.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(|uv| texture.at(uv)), [0.0, 1.0, 0.25, 0.5]);
+        assert_eq!(
+            [[0.0, 1.0], [1.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(|uv| texture.at(uv)),
+            [0.0, 1.0, 0.25, 0.5]
+        );
         assert_eq!([0.1, 0.9].map(|u| texture.at([u, 0.75])), [0.0, 1.0]);
         // A repetition begins with the first pixel.
         assert_eq!(texture.at([1.0 + 1e-9, 0.75]), 0.0);
