@@ -467,9 +467,9 @@ fn a_rate_map_emits_where_the_texture_is_white_or_dark() {
         assert!((437..=563).contains(&born.len()), "{}", born.len());
         born.iter().map(|birth| birth.position.x).sum::<f64>() / born.len() as f64
     };
-    // Pixel centres are at a quarter and at three quarters, and the texture repeats: the rate is 1/2 at both ends. The
-    // integral of x over it is 1/4 of that of 1.
-    for (dark, middle) in [(false, 0.25), (true, -0.25)] {
+    // Pixel centres are at -1/2 and 1/2: the rate is 0 up to the first, x + 1/2 between them, and 1 beyond. The integral of x
+    // over it is 1/12 + 3/8, and that of 1 is 1.
+    for (dark, middle) in [(false, 11.0 / 24.0), (true, -11.0 / 24.0)] {
         assert!((mean(dark) - middle).abs() < 0.1, "{dark}: {} for {middle}", mean(dark));
     }
 }
