@@ -13,8 +13,11 @@ impl Compiler<'_> {
     pub(super) fn warn_of_contradictions(&mut self, object: NodeId) {
         let graph = &self.scene.graph;
         let (node, nucleus) = (graph.node(object), self.program.node);
-        for Dependency { row, need, help } in DEPENDENCIES {
-            let is_own = node.node_type().attribute(row.name).is_some_and(|own| own == *row);
+        let dependencies = DEPENDENCIES
+            .iter()
+            .flat_map(|Dependency { rows, need, help }| rows.iter().map(move |&row| (row, need, *help)));
+        for (row, need, help) in dependencies {
+            let is_own = node.node_type().attribute(row.name).is_some_and(|own| own == row);
             if !is_own || !node.settings().contains_key(row.name) {
                 continue;
             }
@@ -38,7 +41,7 @@ impl Compiler<'_> {
             };
             let place = self.scene.source.place(&format!("{}.{}", node.name(), row.name));
             let message = format!("`{}` of `{}` has no effect: {because}", row.name, node.name());
-            self.findings.warning(&place, message).help(*help);
+            self.findings.warning(&place, message).help(help);
         }
         self.warn_of_bounce(object, &n_base::BOUNCE);
     }

@@ -285,7 +285,8 @@ fn a_limit_of_no_particles_emits_none_and_limits_cannot_be_keyed() {
     };
     assert_eq!([moved(&nodes("0"), 12).len(), moved(&nodes("3"), 12).len()], [0, 3]);
     let text = of_nodes(&nodes("keys([(1, 5), (10, 20)])"), "");
-    assert!(read_scene_text(&text, Path::new("test.ron")).is_err());
+    let found = read_scene_text(&text, Path::new("test.ron")).map(|_| ()).expect_err("it is refused");
+    assert!(found[0].message.contains("`maxCount` of `q` cannot be keyed"), "{found:?}");
 }
 
 #[test]
