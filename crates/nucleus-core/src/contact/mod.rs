@@ -38,7 +38,7 @@
 //! | force fields of surfaces, and of points | [`force_field`], [`point_field`] |
 //! | the nearest point of a surface, and what a ray hits | [`placed_surface`] |
 //! | elements that do not collide with each other | [`pair_filter`], updated by [`exclusion`] |
-//! | the closest points of two elements; of four pairs at a time | [`narrow_phase`], [`closest_lanes`] |
+//! | the closest points of two elements; of a pair in each lane | [`narrow_phase`], [`closest_lanes`] |
 //! | certificates for linear motion | [`ccd`] |
 //! | contacts as tasks that threads share | [`colouring`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`], [`collider_maps`] |
@@ -72,6 +72,8 @@
 //! | `collider::broad_phase::WINDOW_STEPS` | 8 | life of an active set |
 //! | `collider::motion_bounds::TRAVEL_MARGIN` | 0.25 | of the predicted motion, for points that change course |
 //! | `collider::query::GROUP_SIZE` | 2 triangles | fastest on a drape: 55 ms a frame, 67 with eight |
+//! | `closest_lanes::NEEDLE` | 64 roundings | squared sine of a corner below which rounding is a percent of the area |
+//! | `cloth::found_contacts::MANY_OVERLAPS` | 512 pairs | wait for the narrow phase, so that lanes are full |
 //! | `collider::contact::PLANE_VALIDITY` | 1/256 of the rest gap | error of a plane around an edge below 1e-5 of it |
 //! | `ccd::CERTIFIED_GAP` | 0.02 t | far above rounding error |
 //! | `collider::sweep::MAX_ROUNDS` | 4 | over the contacts of one point while they push |

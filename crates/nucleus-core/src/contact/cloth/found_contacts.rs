@@ -63,13 +63,15 @@ impl<R> Default for FoundContacts<R> {
     }
 }
 
-/// Pairs of one kind that wait for the narrow phase, at most about so many: they stay in the cache of a core.
+/// Pairs of one kind from which on the narrow phase is due, so that they stay in the cache of a core.
 const MANY_OVERLAPS: usize = 512;
 
 impl<R: Copy> FoundContacts<R> {
     /// Whether the narrow phase is due.
     pub(super) fn has_many_overlaps(&self) -> bool {
-        self.point_face.overlapping.len().max(self.edge_edge.overlapping.len()) > MANY_OVERLAPS
+        let Self { point_face, edge_edge, point_edge, point_point, .. } = self;
+        let of_faces = point_face.overlapping.len().max(edge_edge.overlapping.len());
+        of_faces.max(point_edge.overlapping.len()).max(point_point.overlapping.len()) > MANY_OVERLAPS
     }
 
     /// Removes all, keeps the capacity.

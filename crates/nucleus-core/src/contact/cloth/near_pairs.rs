@@ -19,6 +19,7 @@ use crate::math::{Lanes, Real, add, dot, sub};
 /// Two cloths, or one and itself, and their contact material.
 pub(super) struct ClothPair<'a, R> {
     pub(super) search: &'a ClothSearch<'a, R>,
+    /// By index; the first is that of the group that is searched.
     pub(super) cloths: [usize; 2],
     pub(super) material: &'a ContactMaterial<R>,
     /// Contact thickness in metres, and interaction range in thicknesses.
