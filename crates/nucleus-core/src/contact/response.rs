@@ -14,6 +14,44 @@ pub(super) const DEPENETRATION_SPEED: f64 = 1.0;
 /// its last bit.
 pub(super) const TOUCH_TOLERANCE: f64 = 1e-6;
 
+/// Smallest mobility of a contact, relative to that of its most mobile point: no point moves farther than 1 / this times
+/// the depth.
+const MIN_MOBILITY: f64 = 0.25;
+
+/// The mobility of a contact: Σ w b² over its points, with inverse masses w in 1/kg and weights b.
+///
+/// Beside a pinned point the weights of the free points are small, and a push that only they take would throw them.
+#[derive(Debug, Clone, Copy)]
+pub struct Mobility<R> {
+    sum: R,
+    largest: R,
+}
+
+impl<R: Real> Mobility<R> {
+    /// That of one side.
+    #[inline(always)]
+    pub fn of<const N: usize>(inverse_masses: [R; N], weights: [R; N]) -> Self {
+        let mut own = Self { sum: R::ZERO, largest: R::ZERO };
+        for k in 0..N {
+            own.sum = own.sum + inverse_masses[k] * weights[k] * weights[k];
+            own.largest = max(own.largest, inverse_masses[k]);
+        }
+        own
+    }
+
+    /// That of two sides.
+    #[inline(always)]
+    pub fn and(self, other: Self) -> Self {
+        Self { sum: self.sum + other.sum, largest: max(self.largest, other.largest) }
+    }
+
+    /// The mobility by which a push is divided; 0 where all points are pinned.
+    #[inline(always)]
+    pub fn total(self) -> R {
+        max(self.sum, self.largest * R::from_f64(MIN_MOBILITY))
+    }
+}
+
 /// A push along the contact normal, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push<R> {

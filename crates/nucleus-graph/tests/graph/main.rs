@@ -2,6 +2,7 @@
 
 mod animation;
 mod constraints;
+mod contact;
 mod effects;
 mod hostile;
 mod independence;

@@ -9,7 +9,7 @@ use crate::contact::cloth::certify::{START_TOLERANCE, rounding_error};
 use crate::contact::cloth::contact::{ClothContact, ClothStep, ContactKind};
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::{ElementPositions, gap_along, interpolate, shortest_line};
-use crate::contact::response::{Adhesion, Impact, Push, Restitution, TOUCH_TOLERANCE};
+use crate::contact::response::{Adhesion, Impact, Mobility, Push, Restitution, TOUCH_TOLERANCE};
 use crate::math::{Real, Row4, add, clamp_length, dot, max, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
 
@@ -141,21 +141,25 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         moved: [R; 3],
         depenetration: [R; 3],
     ) {
-        let mobile =
-            |point: u32, weight: R, side: usize| step.row(point).0[3] * weight * material.mobility[side];
-        let ours: [R; N] = std::array::from_fn(|k| mobile(self.ours[k], b[k], 0));
-        let theirs: [R; M] = std::array::from_fn(|k| mobile(self.theirs[k], c[k], 1));
-        let all = (0..N).map(|k| ours[k] * b[k]).sum::<R>() + (0..M).map(|k| theirs[k] * c[k]).sum::<R>();
+        let (ours, theirs) = self.inverse_masses(step, material);
+        let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
         if all <= R::MIN_DENOMINATOR {
             return;
         }
         let part = R::ONE / all;
         for k in 0..N {
-            self.move_point(step, self.ours[k], ours[k] * part, moved, depenetration);
+            self.move_point(step, self.ours[k], ours[k] * b[k] * part, moved, depenetration);
         }
         for k in 0..M {
-            self.move_point(step, self.theirs[k], -(theirs[k] * part), moved, depenetration);
+            self.move_point(step, self.theirs[k], -(theirs[k] * c[k] * part), moved, depenetration);
         }
+    }
+
+    /// The inverse masses of our points and of theirs in 1/kg, as they count in this contact.
+    #[inline(always)]
+    fn inverse_masses(&self, step: &ClothStep<'_, R>, material: &ContactMaterial<R>) -> ([R; N], [R; M]) {
+        let of = |point: u32, side: usize| step.row(point).0[3] * material.mobility[side];
+        (self.ours.map(|point| of(point, 0)), self.theirs.map(|point| of(point, 1)))
     }
 
     #[inline(always)]
@@ -309,20 +313,17 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         if gained == [R::ZERO; 3] {
             return false;
         }
-        let (b, c) = &weights;
-        let ours = (0..N).map(|k| (self.ours[k], b[k], b[k] * material.mobility[0]));
-        let theirs = (0..M).map(|k| (self.theirs[k], c[k], -(c[k] * material.mobility[1])));
-        let each = ours
-            .chain(theirs)
-            .map(|(point, weight, mobility)| (point, weight, mobility * step.row(point).0[3]));
-        let magnitude = |x: R| if x < R::ZERO { -x } else { x };
-        let all: R = each.clone().map(|(_, weight, mobility)| weight * magnitude(mobility)).sum();
+        let (b, c) = weights;
+        let (ours, theirs) = self.inverse_masses(step, material);
+        let all = Mobility::of(ours, b).and(Mobility::of(theirs, c)).total();
         if all <= R::MIN_DENOMINATOR {
             return false;
         }
-        for (point, _, mobility) in each {
+        let of_ours = (0..N).map(|k| (self.ours[k], ours[k] * b[k]));
+        let of_theirs = (0..M).map(|k| (self.theirs[k], -(theirs[k] * c[k])));
+        for (point, mobile) in of_ours.chain(of_theirs) {
             let row = velocity(point);
-            let [x, y, z] = add(row.xyz(), scale(gained, mobility / all));
+            let [x, y, z] = add(row.xyz(), scale(gained, mobile / all));
             // SAFETY: as above.
             #[allow(unsafe_code)]
             unsafe {

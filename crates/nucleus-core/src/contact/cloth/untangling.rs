@@ -10,6 +10,7 @@
 use crate::bytes::checkpoint_struct;
 use crate::contact::cloth::contact::ClothStep;
 use crate::contact::cloth::elements::ElementGroups;
+use crate::contact::response::Mobility;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub, unit};
 
 /// In metres.
@@ -216,16 +217,17 @@ impl Intersection {
 
     /// Moves edge and face relative to each other by `motion` metres, each by its mobility, without velocity.
     fn displace<R: Real>(&self, step: &ClothStep<'_, R>, piercing: &Piercing, motion: Vector) {
-        let (ours, theirs) = &piercing.weights;
-        let edge = self.edge.iter().zip(ours).map(|(&point, &weight)| (point, weight));
-        let sides = edge.chain(self.face.iter().zip(theirs).map(|(&point, &weight)| (point, -weight)));
-        let mobility = |point: u32| step.row(point).0[3].to_f64();
-        let all: f64 = sides.clone().map(|(point, weight)| mobility(point) * weight * weight).sum();
+        let (ours, theirs) = piercing.weights;
+        let inverse_mass = |point: u32| step.row(point).0[3].to_f64();
+        let (edge, face) = (self.edge.map(inverse_mass), self.face.map(inverse_mass));
+        let all = Mobility::of(edge, ours).and(Mobility::of(face, theirs)).total();
         if all <= 0.0 {
             return;
         }
-        for (point, weight) in sides {
-            let moved = scale(motion, mobility(point) * weight / all).map(R::from_f64);
+        let of_edge = (0..2).map(|k| (self.edge[k], edge[k] * ours[k]));
+        let of_face = (0..3).map(|k| (self.face[k], -(face[k] * theirs[k])));
+        for (point, mobile) in of_edge.chain(of_face) {
+            let moved = scale(motion, mobile / all).map(R::from_f64);
             let row = step.row(point);
             let [x, y, z] = add(row.xyz(), moved);
             step.writer.push_by_cloth(point, Row4([x, y, z, row.0[3]]), moved);

@@ -5,14 +5,9 @@ use crate::contact::collider::contact::{
 };
 use crate::contact::collider::separation::{best_plane, separated};
 use crate::contact::material::{ContactMaterial, ContactPoints};
-use crate::contact::response::Restitution;
-use crate::contact::response::{Adhesion, Push, TOUCH_TOLERANCE, coulomb_correction};
+use crate::contact::response::{Adhesion, Mobility, Push, Restitution, TOUCH_TOLERANCE, coulomb_correction};
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Real, add, dot, scale};
-
-/// Smallest mobility of an element, relative to that of its most mobile point: no point moves farther than 1 /
-/// this times the depth of a contact.
-const MIN_MOBILITY: f64 = 0.25;
 
 impl<R: Real> ColliderStep<'_, R> {
     /// The gap below which a contact may push, in metres.
@@ -112,11 +107,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// those at the start of the step and now.
     pub(super) fn push(&self, step: &ColliderStep<'_, R>, rest_gap: R, gaps: [R; 2]) {
         let rows = self.points.map(|point| step.row(point));
-        let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
-        // Beside a pinned point the effective mobility is small, and the free points would move too far.
-        let least = rows.iter().fold(R::ZERO, |most, row| if row.0[3] > most { row.0[3] } else { most });
-        let least = least * R::from_f64(MIN_MOBILITY);
-        let mobility = if mobility < least { least } else { mobility };
+        let mobility = Mobility::of(rows.map(|row| row.0[3]), self.weights).total();
         if mobility <= R::ZERO {
             return;
         }
@@ -230,7 +221,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             before[axis] + to[axis] - from[axis] - self.surface_motion[axis] * elapsed
         });
         let Some(correction) = adhesion.correction(before, now, self.normal, step.h) else { return };
-        let mobility: R = (0..N).map(|k| rows[k].0[3] * self.weights[k] * self.weights[k]).sum();
+        let mobility = Mobility::of(rows.map(|row| row.0[3]), self.weights).total();
         if mobility > R::ZERO {
             for (k, mut row) in rows.into_iter().enumerate() {
                 let part = row.0[3] * self.weights[k] / mobility;
