@@ -23,7 +23,9 @@ use crate::constraints::link::velocity::{apply_link_forces, damp_links};
 use crate::constraints::liquid::{LiquidScene, LiquidSolver};
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
-use crate::contact::cloth::pass::{apply_cloth_adhesion, begin_cloth_contact, resolve_cloth_contacts};
+use crate::contact::cloth::pass::{
+    apply_cloth_adhesion, balance_joined_cloths, begin_cloth_contact, resolve_cloth_contacts,
+};
 use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
 use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
 use crate::contact::collider::start_gaps::record_start_gaps;
@@ -128,6 +130,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     let Solver { model, state, contact, links, .. } = solver;
     let links_changed = form_links(links, model, frame);
     update_pair_filter(contact, model, links, frame, links_changed);
+    balance_joined_cloths(contact, links);
     begin_links(links, model, state, contact, frame);
     let anchors = if contact.is_free.contains(&false) { &state.anchor[..] } else { &[] };
     contact.ground.begin_frame(frame.plane.as_ref(), anchors, &contact.pair_filter);

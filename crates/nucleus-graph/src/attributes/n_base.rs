@@ -80,7 +80,7 @@ node_table! {
         COLLIDE: bool = toggle("collide", "cold", true).solved("nucleus_core::contact::material");
         /// Enables self-collision. A liquid collides with itself only where it is given.
         SELF_COLLIDE: bool = toggle("selfCollide", "scld", true).solved("nucleus_graph::compile::thickness");
-        /// Objects whose layers differ by less than `collisionLayerRange` collide. In a contact, the object in the lower layer is the heavier one. A collider acts on objects of its own layer and of higher ones.
+        /// Objects whose layers differ by less than `collisionLayerRange` collide. In a contact, the object in the lower layer is the heavier one, unless a constraint joins the two. A collider acts on objects of its own layer and of higher ones.
         COLLISION_LAYER: f64 = float("collisionLayer", "cll", 0.0).soft(0.0, 10.0).solved("nucleus_core::contact::material");
         /// Colour of the thickness in Maya's viewport.
         DISPLAY_COLOR: [f64; 3] = vector("displayColor", "dcl", [1.0, 0.8, 0.0], ["dcr", "dcg", "dcb"]).elsewhere("only Maya's viewport draws it");
@@ -182,15 +182,15 @@ node_table! {
         COLLIDE_STRENGTH_MAP: f64 = texture("collideStrengthMap", "csmp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on collide strength, per point.
         COLLIDE_STRENGTH_PER_VERTEX: Vec<f64> = floats("collideStrengthPerVertex", "cspv").solved("nucleus_core::model::vertex_maps");
-        /// Source of the map of thickness: none, a value per point, or a texture.
+        /// Source of the map of thickness: none, a value per point, or a texture. Default: what is given.
         THICKNESS_MAP_TYPE: Choice = choice("thicknessMapType", "tmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of bounce: none, a value per point, or a texture.
+        /// Source of the map of bounce: none, a value per point, or a texture. Default: what is given.
         BOUNCE_MAP_TYPE: Choice = choice("bounceMapType", "bmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of friction: none, a value per point, or a texture.
+        /// Source of the map of friction: none, a value per point, or a texture. Default: what is given.
         FRICTION_MAP_TYPE: Choice = choice("frictionMapType", "fmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of stickiness: none, a value per point, or a texture.
+        /// Source of the map of stickiness: none, a value per point, or a texture. Default: what is given.
         STICKINESS_MAP_TYPE: Choice = choice("stickinessMapType", "skmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of collide strength: none, a value per point, or a texture.
+        /// Source of the map of collide strength: none, a value per point, or a texture. Default: what is given.
         COLLIDE_STRENGTH_MAP_TYPE: Choice = choice("collideStrengthMapType", "csmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Dynamic Properties Maps" {
@@ -202,9 +202,9 @@ node_table! {
         MASS_MAP: f64 = texture("massMap", "mamp", 1.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on mass, per point.
         MASS_PER_VERTEX: Vec<f64> = floats("massPerVertex", "mpv").solved("nucleus_core::model::vertex_maps");
-        /// Source of the map of damp: none, a value per point, or a texture.
+        /// Source of the map of damp: none, a value per point, or a texture. Default: what is given.
         DAMP_MAP_TYPE: Choice = choice("dampMapType", "dmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of mass: none, a value per point, or a texture.
+        /// Source of the map of mass: none, a value per point, or a texture. Default: what is given.
         MASS_MAP_TYPE: Choice = choice("massMapType", "mmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Force Field Maps" {
@@ -212,7 +212,7 @@ node_table! {
         FIELD_MAGNITUDE_MAP: f64 = texture("fieldMagnitudeMap", "fmmp", 0.0).solved("nucleus_core::model::vertex_maps");
         /// Factor on field magnitude, per point.
         FIELD_MAGNITUDE_PER_VERTEX: Vec<f64> = floats("fieldMagnitudePerVertex", "fmpv").solved("nucleus_core::model::vertex_maps");
-        /// Source of the map of field magnitude: none, a value per point, or a texture.
+        /// Source of the map of field magnitude: none, a value per point, or a texture. Default: what is given.
         FIELD_MAGNITUDE_MAP_TYPE: Choice = choice("fieldMagnitudeMapType", "fmmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
     }
     "Nucleus (open)" {

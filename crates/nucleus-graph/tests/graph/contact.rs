@@ -36,3 +36,25 @@ fn a_curtain_that_its_pins_draw_closer_than_its_thickness_hangs_still() {
         }
     }
 }
+
+/// Two sheets of cloth with buttons between them, without weight and air.
+fn buttoned(layers: [u32; 2], rest: f64) -> String {
+    let [low, high] = layers;
+    format!(
+        r#""n": nucleus(gravity: 0, airDensity: 0),
+        "a": polyPlane(width: 0.5, height: 0.5, subdivisions: (8, 8)),
+        "b": polyPlane(width: 0.5, height: 0.5, subdivisions: (8, 8), translate: (0, 0.02, 0)),
+        "p": nCloth(inputMesh: "a", preset: "cotton", thickness: 0.005, drag: 0, collisionLayer: {low}),
+        "q": nCloth(inputMesh: "b", preset: "cotton", thickness: 0.005, drag: 0, collisionLayer: {high}),
+        "buttons": dynamicConstraint(constraintType: pointToPoint, connectionMethod: withinMaxDistance,
+            maxDistance: 0.03, restLengthScale: {rest}, components: ["p", "q"])"#
+    )
+}
+
+#[test]
+fn buttons_shorter_than_the_contact_distance_leave_cloth_at_rest_in_any_layer() {
+    for layers in [[1, 1], [1, 2], [2, 1]] {
+        let found = most_energy(&reports(&buttoned(layers, 0.3), 24)[12..]);
+        assert!(found < 1e-8, "layers {layers:?}: {found} J");
+    }
+}

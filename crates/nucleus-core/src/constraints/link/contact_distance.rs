@@ -1,8 +1,8 @@
 //! The distance that contact keeps between the two sides of a link.
 //!
 //! A link that is shorter than that would pull together what contact pushes apart, in every step, and the two would heat
-//! up. So a link to an edge or a face does not pull up to this distance: it then holds its sides between its rest length
-//! and the contact thickness.
+//! up. So such a link does not pull up to this distance: it then holds its sides between its rest length and the contact
+//! thickness.
 
 use crate::contact::material::ContactMaterial;
 use crate::contact::pair_filter::PairFilter;
@@ -19,12 +19,12 @@ pub(super) struct Collisions<'a, R> {
 }
 
 impl<R: Real> Collisions<'_, R> {
-    /// The contact thickness of the two sides in metres, before vertex maps; 0 where they do not collide, between two
-    /// single points, of a fold, and within a cloth, where contact keeps no more than half of the distance at rest.
+    /// The contact thickness of the two sides in metres, before vertex maps; 0 where they do not collide, of a fold, and
+    /// within a cloth, where contact keeps no more than half of the distance at rest.
     pub(super) fn distance(&self, link: &Link) -> f64 {
         let FrameInput { cloths, colliders, layer_range, .. } = self.frame;
         let material = match link.sides {
-            _ if link.fold.is_some() || link.points().is_some() => None,
+            _ if link.fold.is_some() => None,
             [LinkSide::Cloth { cloth: a, .. }, LinkSide::Cloth { cloth: b, .. }] if a != b => {
                 let pair = [a, b].map(|cloth| &cloths[cloth.index()]);
                 ContactMaterial::<R>::for_cloths(pair, [1.0; 2], *layer_range).filter(|_| {

@@ -113,7 +113,7 @@ impl<R: Real> ConstraintLinks<R> {
                 let ends = [ends.rows[0], ends.rows[1]];
                 let slenderness = R::from_f64(if layout.is_weld { 1.0 } else { 1.0 / link.strength });
                 plain.push(LinkRow { ends, rest_length, slenderness, warp: R::ONE });
-            } else if is_pair(link, &ends) {
+            } else if is_pair(link, &ends, layout) {
                 pairs.push((at, ends));
             } else if ends.count > 0 {
                 combined.push((at, ends));
@@ -139,7 +139,7 @@ impl<R: Real> ConstraintLinks<R> {
     }
 
     /// The links that join places and are whole.
-    pub(super) fn joining(&self) -> impl Iterator<Item = &Link> {
+    pub fn joining(&self) -> impl Iterator<Item = &Link> {
         let all = self.links.iter().zip(&self.broken);
         all.filter(|(link, broken)| !**broken && link.fold.is_none()).map(|(link, _)| link)
     }
@@ -223,16 +223,23 @@ impl<R: Real> ConstraintLinks<R> {
     }
 }
 
-/// Whether a link joins two single points that push each other alike.
-fn is_pair(link: &Link, ends: &Ends) -> bool {
+/// Whether a link joins two single points that push each other alike, and whose distance contact does not limit.
+fn is_pair(link: &Link, ends: &Ends, layout: Layout) -> bool {
     let is_pair = ends.count == 2 && ends.weights[..2] == [1.0, -1.0] && ends.push[..2] == [1.0, -1.0];
-    is_pair && link.sides.iter().all(LinkSide::is_free)
+    is_pair && link.sides.iter().all(LinkSide::is_free) && !may_meet_contact(link, layout)
+}
+
+/// Whether contact may keep the two points of a link farther apart than it would pull them. Welded points do not collide,
+/// and links that break are judged beside their neighbours.
+fn may_meet_contact(link: &Link, layout: Layout) -> bool {
+    let joins_cloths = link.points().is_some_and(|[(a, _), (b, _)]| a != b);
+    joins_cloths && !layout.is_weld && !layout.can_break
 }
 
 /// Whether it is a row of stretch: a pair that cannot break, of a strength that does not change.
 fn is_plain(link: &Link, ends: &Ends, layout: Layout) -> bool {
     let is_even = layout.is_weld || link.strength == 1.0 || layout.is_physical && link.strength > 0.0;
-    is_pair(link, ends) && is_even && !layout.can_break && (layout.is_weld || !layout.drops_off)
+    is_pair(link, ends, layout) && is_even && !layout.can_break && (layout.is_weld || !layout.drops_off)
 }
 
 impl<R: Real> Links<R> {

@@ -1,12 +1,15 @@
 //! The passes of a time step over contacts among cloths, and the start of a frame.
 
+use crate::constraints::link::lists::{ConstraintLinks, Links};
 use crate::contact::cloth::broad_phase::update_cloth_candidates;
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::contact::{ClothStep, FrictionAnchors};
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::system::{ContactPass, ContactSystem};
+use crate::input::ClothId;
 use crate::input::frame::FrameInput;
+use crate::input::links::LinkSide;
 use crate::math::{Real, Row4, sub};
 use crate::output::{Stage, StepObserver};
 use crate::state::State;
@@ -39,6 +42,25 @@ pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSyste
         *interval_start = Row4([x, y, z, R::ZERO]);
     }
     cloth_contacts.interval = [cloth_contacts.interval[0] - 1.0, 0.0];
+}
+
+/// Gives cloths that links join the same weight in their contact, whatever their layers: a contact that moves only one of
+/// them, against a link that pulls both, would drive the two through space.
+pub fn balance_joined_cloths<R: Real>(contact: &mut ContactSystem<R>, links: &Links<R>) {
+    let ContactSystem { cloth_contacts: Some(ClothContacts { materials, .. }), .. } = contact else { return };
+    let has_layers = |material: &ContactMaterial<R>| material.mobility != [R::ONE; 2];
+    if !materials.iter().flatten().any(has_layers) {
+        return;
+    }
+    let cloths = materials.len().isqrt();
+    for link in links.constraints.iter().flat_map(ConstraintLinks::joining) {
+        let [LinkSide::Cloth { cloth: a, .. }, LinkSide::Cloth { cloth: b, .. }] = link.sides else {
+            continue;
+        };
+        for [ours, theirs] in [[a, b], [b, a]].map(|pair| pair.map(ClothId::index)) {
+            materials[ours * cloths + theirs].iter_mut().for_each(|material| material.mobility = [R::ONE; 2]);
+        }
+    }
 }
 
 /// The contact materials of a cloth with itself and with every other cloth.
