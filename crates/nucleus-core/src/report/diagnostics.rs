@@ -16,6 +16,7 @@ use crate::constraints::weave::{self, WeaveGroup};
 use crate::contact::cloth::contact::ClothStep;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::collider::contact::ColliderContact;
+use crate::contact::pair_filter::PairFilter;
 use crate::contact::system::ContactSystem;
 use crate::contact::time_step::{ColliderStepArgs, ContactCounters};
 use crate::input::frame::{ClothFrame, FrameInput, ResistanceModel};
@@ -40,7 +41,7 @@ pub fn report<R: Real>(
     counters: &ContactCounters,
 ) -> StepReport {
     let (max_strain, strain_99) = strains(&solver.model.cloths, &solver.state, frame);
-    let points = PointFigures::of(&solver.model.cloths, &solver.state, frame);
+    let points = PointFigures::of(&solver.model.cloths, &solver.state, &solver.contact.pair_filter, frame);
     StepReport {
         max_strain,
         strain_99,
@@ -226,27 +227,33 @@ struct PointFigures {
 }
 
 impl PointFigures {
-    fn of<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> Self {
+    fn of<R: Real>(
+        cloths: &[ClothModel<R>],
+        state: &State<R>,
+        filter: &PairFilter,
+        frame: &FrameInput,
+    ) -> Self {
         let mut figures = Self { kinetic_energy: 0.0, finite: true, ground_gap: f64::INFINITY };
         let plane = frame.plane.as_ref();
         let plane =
             plane.map(|ground| (ground.origin, ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y)));
         for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
             let plane = plane.filter(|_| settings.collide && settings.thickness > 0.0);
-            let lowest = figures.add(cloth.points(), state, plane);
+            let lowest = figures.add(cloth.points(), state, plane, filter);
             figures.ground_gap = figures.ground_gap.min(lowest / settings.thickness);
         }
         figures.finite &= figures.kinetic_energy.is_finite();
         figures
     }
 
-    /// Adds the points of a cloth. Returns the smallest height in metres of those that are not pinned above a plane, which is
-    /// given by its origin and its normal.
+    /// Adds the points of a cloth. Returns the smallest height in metres above a plane, given by its origin and its normal,
+    /// of those that are not pinned and collide with it.
     fn add<R: Real>(
         &mut self,
         points: Range<u32>,
         state: &State<R>,
         plane: Option<(Vector3<f64>, Vector3<f64>)>,
+        filter: &PairFilter,
     ) -> f64 {
         let mut lowest = f64::INFINITY;
         for (row, v) in points.clone().zip(state.seen_velocities(points)) {
@@ -255,6 +262,7 @@ impl PointFigures {
             self.finite &= displacement.xyz().iter().all(|x| x.to_f64().is_finite());
             if let Some((origin, normal)) = plane
                 && displacement.0[3] > R::ZERO
+                && !filter.excludes_ground(row)
             {
                 lowest = lowest.min((Vector3::from(state.position(row)) - origin).dot(&normal));
             }

@@ -58,3 +58,14 @@ fn buttons_shorter_than_the_contact_distance_leave_cloth_at_rest_in_any_layer() 
         assert!(found < 1e-8, "layers {layers:?}: {found} J");
     }
 }
+
+#[test]
+fn the_smallest_gap_is_that_of_points_that_collide() {
+    let nodes = r#""n": nucleus(usePlane: true),
+        "m": polyPlane(width: 0.8, height: 0.8, subdivisions: (8, 8), translate: (0, 0.1, 0)),
+        "q": nCloth(inputMesh: "m", thickness: 0.005),
+        "s": polySphere(radius: 0.1, translate: (0, -5, 0)), "ball": nRigid(inputMesh: "s"),
+        "off": dynamicConstraint(constraintType: disableCollision, components: ["q.where(x > 0)", "ball"])"#;
+    let last = reports(nodes, 20).pop().expect("frames");
+    assert!(last.report.min_gap > 0.9, "{}", last.report.min_gap);
+}
