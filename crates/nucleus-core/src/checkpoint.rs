@@ -127,6 +127,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         is_free: _,
         free_gap: _,
         free_tasks: _,
+        row_states: _,
         interval_bounds,
         bounds_violated,
         collider_materials,

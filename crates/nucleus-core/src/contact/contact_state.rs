@@ -23,9 +23,9 @@ const COMPRESSED: f64 = 0.9;
 const MIN_WEIGHT: f64 = 0.25;
 
 /// The highest state so far of each row of the solver.
-struct HighestStates(Vec<ContactState>);
+struct HighestStates<'a>(&'a mut [ContactState]);
 
-impl HighestStates {
+impl HighestStates<'_> {
     fn raise(&mut self, point: u32, to: ContactState) {
         let state = &mut self.0[point as usize];
         *state = (*state).max(to);
@@ -55,14 +55,29 @@ pub fn list_contact_states<R: Real>(
 ) {
     out.resize_with(model.cloths.len(), Vec::new);
     out.iter_mut().for_each(Vec::clear);
-    let points = ContactPoints { model, state, contact };
-    if !points.can_have_contact() {
+    let mut rows = Vec::new();
+    contact_states_of_rows(model, state, contact, &mut rows);
+    if rows.is_empty() {
         return;
     }
-    let contact_states = points.contact_states();
     for (model, out) in model.cloths.iter().zip(out) {
         let first = model.points().start;
-        out.extend(model.places().iter().map(|&place| contact_states[(first + place) as usize]));
+        out.extend(model.places().iter().map(|&place| rows[(first + place) as usize]));
+    }
+}
+
+/// Replaces `rows` by the contact state of each row of the solver; empty where the scene can have no contact.
+pub fn contact_states_of_rows<R: Real>(
+    model: &Model<R>,
+    state: &State<R>,
+    contact: &ContactSystem<R>,
+    rows: &mut Vec<ContactState>,
+) {
+    rows.clear();
+    let points = ContactPoints { model, state, contact };
+    if points.can_have_contact() {
+        rows.resize(state.anchor.len(), ContactState::Free);
+        points.raise(&mut HighestStates(rows));
     }
 }
 
@@ -81,21 +96,19 @@ impl<R: Real> ContactPoints<'_, R> {
             || self.contact.cloth_contacts.is_some()
     }
 
-    /// The contact state of each row of the solver.
-    fn contact_states(&self) -> Vec<ContactState> {
-        let mut states = HighestStates(vec![ContactState::Free; self.state.anchor.len()]);
-        self.set_ground_states(&mut states);
+    /// Raises every row to its contact state.
+    fn raise(&self, states: &mut HighestStates<'_>) {
+        self.set_ground_states(states);
         for list in &self.contact.collider_contacts {
             if self.contact.is_free[list.cloth] {
-                self.set_free_states(list, &mut states);
+                self.set_free_states(list, states);
             }
-            self.set_collider_states(list, &mut states);
+            self.set_collider_states(list, states);
         }
-        self.set_cloth_states(&mut states);
-        states.0
+        self.set_cloth_states(states);
     }
 
-    fn set_ground_states(&self, states: &mut HighestStates) {
+    fn set_ground_states(&self, states: &mut HighestStates<'_>) {
         let grounded = self.model.cloths.iter().zip(&self.contact.ground_materials);
         for (cloth, material) in grounded.filter_map(|(cloth, material)| Some((cloth, material.as_ref()?))) {
             for row in cloth.points() {
@@ -107,7 +120,7 @@ impl<R: Real> ContactPoints<'_, R> {
         }
     }
 
-    fn set_collider_states(&self, list: &ColliderContacts<R>, states: &mut HighestStates) {
+    fn set_collider_states(&self, list: &ColliderContacts<R>, states: &mut HighestStates<'_>) {
         let ColliderContacts { point_face, edge_edge, face_point, active, depenetration, .. } = list;
         depenetration.points.iter().for_each(|&(point, _)| states.raise(point, ContactState::Depenetrating));
         // The pair may not collide in this frame.
@@ -133,7 +146,7 @@ impl<R: Real> ContactPoints<'_, R> {
     }
 
     /// Free points have no list of contacts: their nearest faces are searched.
-    fn set_free_states(&self, list: &ColliderContacts<R>, states: &mut HighestStates) {
+    fn set_free_states(&self, list: &ColliderContacts<R>, states: &mut HighestStates<'_>) {
         let Some(Some(material)) = self.contact.collider_materials_of(list.cloth).get(list.collider) else {
             return;
         };
@@ -154,7 +167,7 @@ impl<R: Real> ContactPoints<'_, R> {
         contact: &ColliderContact<R, N, M>,
         collider: usize,
         material: &ContactMaterial<R>,
-        states: &mut HighestStates,
+        states: &mut HighestStates<'_>,
     ) {
         self.set_state(contact.points, contact.collider_points, collider, material, states);
     }
@@ -165,7 +178,7 @@ impl<R: Real> ContactPoints<'_, R> {
         collider_points: [u32; M],
         collider: usize,
         material: &ContactMaterial<R>,
-        states: &mut HighestStates,
+        states: &mut HighestStates<'_>,
     ) {
         let state = &self.contact.collider_states[collider];
         let ours = points.map(|point| self.state.position(point));
@@ -195,7 +208,7 @@ impl<R: Real> ContactPoints<'_, R> {
         material.thickness_at(&self.contact.material_maps, (points, [], &(shares, [])), most).to_f64()
     }
 
-    fn set_cloth_states(&self, states: &mut HighestStates) {
+    fn set_cloth_states(&self, states: &mut HighestStates<'_>) {
         let Some(cloth_contacts) =
             self.contact.cloth_contacts.as_ref().filter(|cloth_contacts| cloth_contacts.is_enabled())
         else {
@@ -217,7 +230,7 @@ impl<R: Real> ContactPoints<'_, R> {
         &self,
         contact: &ClothContact<R, N, M>,
         materials: &[Option<ContactMaterial<R>>],
-        states: &mut HighestStates,
+        states: &mut HighestStates<'_>,
     ) {
         let place = |point: u32| self.state.position(point);
         let (_, (ours, theirs), distance) =

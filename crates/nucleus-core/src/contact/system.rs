@@ -22,6 +22,7 @@ use crate::math::{Real, Row4};
 use crate::model::builder::Cloth;
 use crate::model::vertex_maps::VertexMaps;
 use crate::model::{ClothModel, ColliderModel, Model};
+use crate::output::ContactState;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::{Schedule, StepInterval};
 use crate::state::State;
@@ -75,6 +76,8 @@ pub struct ContactSystem<R: Real> {
     pub free_gap: f64,
     /// The results of tasks over free points.
     pub free_tasks: Vec<Mutex<NearPoints<R>>>,
+    /// The contact state of each row, where particles have collision events.
+    pub row_states: Vec<ContactState>,
 }
 
 impl<R: Real> ContactSystem<R> {
@@ -115,6 +118,7 @@ impl<R: Real> ContactSystem<R> {
             is_free: vec![false; models.len()],
             free_gap: f64::INFINITY,
             free_tasks: Vec::new(),
+            row_states: Vec::new(),
         }
     }
 

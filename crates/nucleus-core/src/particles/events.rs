@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::contact_state::list_contact_states;
+use crate::contact::contact_state::contact_states_of_rows;
 use crate::input::particles::unit_random;
 use crate::math::Real;
 use crate::output::ContactState;
@@ -46,22 +46,22 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
         return;
     }
     solver.contact.set_time(time);
-    let mut states = Vec::new();
-    list_contact_states(&solver.model, &solver.state, &solver.contact, &mut states);
+    let mut states = std::mem::take(&mut solver.contact.row_states);
+    contact_states_of_rows(&solver.model, &solver.state, &solver.contact, &mut states);
     let mut populations = std::mem::take(&mut solver.state.populations);
     for population in populations.iter_mut().filter(|population| !population.events().is_empty()) {
-        let (cloth, first) =
-            (population.cloth(), solver.model.cloths[population.cloth()].blocks.rows().start);
+        let first = solver.model.cloths[population.cloth()].blocks.rows().start;
         for at in 0..population.len() {
-            let touches = states[cloth].get(at).is_some_and(|&state| state != ContactState::Free);
-            let Some(collision) = population.notice(at, touches) else { continue };
             let row = first + at as u32;
+            let touches = states.get(row as usize).is_some_and(|&state| state != ContactState::Free);
+            let Some(collision) = population.notice(at, touches) else { continue };
             let place = Vector3::from(solver.state.position(row));
             let velocity = Vector3::from(solver.state.velocity[row as usize].xyz().map(R::to_f64));
             happen(population, at, collision, [place, velocity]);
         }
     }
     solver.state.populations = populations;
+    solver.contact.row_states = states;
 }
 
 /// Everything that happens at one collision of one particle.
