@@ -37,6 +37,8 @@ pub enum Values {
     Numbers,
     /// Whole numbers, at least 0.
     Counts,
+    /// Gap ratios, at most [`MAX_MEASURED_GAP`].
+    Gaps,
 }
 
 /// The direction of a limit.
@@ -92,8 +94,6 @@ const FRAME: &str = "frame";
 /// The check that requires an audit.
 const NO_SELF_INTERSECTION: &str = "noSelfIntersection";
 
-/// The check of gaps.
-pub const MIN_GAP: &str = "minGap";
 /// Largest gap ratio that is measured: a collider farther away than the thickness may be no contact candidate.
 pub const MAX_MEASURED_GAP: f64 = 1.0;
 
@@ -134,19 +134,19 @@ static FORMS: [Form; 18] = [
         &["pairs"],
         |sample| Some(sample.report.pairs_unresolved as f64),
         "No frame leaves more pairs of elements unresolved than this. Without this check a run fails with the first.",
-    ).counting(),
+    ).taking(Values::Counts),
     at_most(
         MAX_DEPENETRATING,
         &["points"],
         |sample| Some(sample.report.depenetrating as f64),
         "No frame has more points inside closed colliders than this. Without this check a run fails if it ends with any.",
-    ).counting(),
+    ).taking(Values::Counts),
     at_most(
         MAX_INTERSECTIONS,
         &["edges"],
         |sample| Some(sample.report.intersections as f64),
         "No frame has more edges of cloth through faces of cloth than this. Without this check a run fails if it ends with any.",
-    ).counting(),
+    ).taking(Values::Counts),
     at_most(
         NO_SELF_INTERSECTION,
         &[],
@@ -172,11 +172,11 @@ static FORMS: [Form; 18] = [
         "From this frame on 99 % of the links are not longer than at rest by more than this share.",
     ),
     at_least(
-        MIN_GAP,
+        "minGap",
         &["gap"],
         |sample| Some(measured_gap(sample.report.min_gap)),
         "The gap between cloth and colliders is at least this share of the thickness, at most 1: larger gaps are not measured.",
-    ),
+    ).taking(Values::Gaps),
     at_most(
         "finite",
         &[],
@@ -194,25 +194,25 @@ static FORMS: [Form; 18] = [
         &["links"],
         |sample| Some(sample.report.broken_links as f64),
         "At most this many links of constraints break.",
-    ).counting(),
+    ).taking(Values::Counts),
     at_least(
         "tornBy",
         &["frame", "links"],
         |sample| Some(sample.report.broken_links as f64),
         "From this frame on at least this many links of constraints are broken.",
-    ).counting(),
+    ).taking(Values::Counts),
     at_least(
         "minParticles",
         &["frame", "particles"],
         |sample| Some(sample.report.particles as f64),
         "From this frame on there are at least this many particles in objects with births and deaths.",
-    ).counting(),
+    ).taking(Values::Counts),
     at_most(
         "maxParticles",
         &["particles"],
         |sample| Some(sample.report.particles as f64),
         "No frame has more particles than this in objects with births and deaths.",
-    ).counting(),
+    ).taking(Values::Counts),
     at_most(
         "volumeError",
         &["frame", "share"],
@@ -348,9 +348,9 @@ impl Form {
         }
     }
 
-    /// The same for arguments that are counts.
-    const fn counting(self) -> Self {
-        Self { values: Values::Counts, ..self }
+    /// The same for arguments of another type.
+    const fn taking(self, values: Values) -> Self {
+        Self { values, ..self }
     }
 
     /// All kinds of checks.

@@ -1,6 +1,6 @@
 //! `checks: [noPenetration, maxStretch(0.02), atRestBy(frame: 100, speed: 0.01)]`.
 
-use crate::checks::{Check, Form, MAX_MEASURED_GAP, MIN_GAP, RENAMED, Values};
+use crate::checks::{Check, Form, MAX_MEASURED_GAP, RENAMED, Values};
 use crate::diagnostic::{Findings, listed, nearest};
 use crate::scene::syntax::{Node, Value, Word};
 
@@ -37,11 +37,6 @@ fn read_check(node: &Node, findings: &mut Findings) -> Option<Check> {
         return None;
     };
     let arguments = arguments(form, node, findings)?;
-    if form.name == MIN_GAP && arguments.iter().any(|&gap| gap > MAX_MEASURED_GAP) {
-        let message = "`minGap` takes at most 1: gaps above the thickness are not measured";
-        findings.error(&node.span, message).help("write `minGap(1)`, or raise `thickness`");
-        return None;
-    }
     Check::new(form.name, &arguments)
 }
 
@@ -74,6 +69,7 @@ fn arguments(form: &Form, node: &Node, findings: &mut Findings) -> Option<Vec<f6
         .map(|(parameter, value)| match form.values {
             Values::Numbers => number(&label(parameter), value, findings),
             Values::Counts => count(&label(parameter), value, findings),
+            Values::Gaps => gap(form, &label(parameter), value, findings),
         })
         .collect();
     values.into_iter().collect()
@@ -87,6 +83,21 @@ fn count(label: &str, node: &Node, findings: &mut Findings) -> Option<f64> {
         return None;
     }
     Some(count)
+}
+
+/// A gap ratio as far as it is measured.
+fn gap(form: &Form, label: &str, node: &Node, findings: &mut Findings) -> Option<f64> {
+    let gap = number(label, node, findings)?;
+    if gap > MAX_MEASURED_GAP {
+        let name = form.name;
+        let message =
+            format!("`{name}` takes at most {MAX_MEASURED_GAP}: gaps above the thickness are not measured");
+        findings
+            .error(&node.span, message)
+            .help(format!("write `{name}({MAX_MEASURED_GAP})`, or raise `thickness`"));
+        return None;
+    }
+    Some(gap)
 }
 
 fn all_names() -> String {

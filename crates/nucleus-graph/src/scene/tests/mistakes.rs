@@ -42,7 +42,7 @@ fn a_check_of_gaps_above_the_thickness_is_refused() {
     expect(
         &scene("minGap(10)"),
         &[(
-            "minGap(10)",
+            "10",
             "`minGap` takes at most 1: gaps above the thickness are not measured",
             "write `minGap(1)`, or raise `thickness`",
         )],
