@@ -41,7 +41,7 @@ pub struct Note {
 impl Diagnostic {
     /// Adds how to fix it.
     pub(crate) fn help(&mut self, help: impl Into<String>) -> &mut Self {
-        self.help = Some(help.into());
+        self.help = Some(bounded(help.into()));
         self
     }
 
@@ -55,7 +55,7 @@ impl Diagnostic {
 
     /// Adds a note with a related place.
     pub(crate) fn note_at(&mut self, span: &Range<usize>, message: impl Into<String>) -> &mut Self {
-        self.notes.push(Note { message: message.into(), span: Some(span.clone()) });
+        self.notes.push(Note { message: bounded(message.into()), span: Some(span.clone()) });
         self
     }
 }
@@ -100,11 +100,25 @@ impl Findings {
     }
 
     fn push(&mut self, severity: Severity, span: &Range<usize>, message: String) -> &mut Diagnostic {
-        let (file, span) = (self.file.clone(), span.clone());
+        let (file, span, message) = (self.file.clone(), span.clone(), bounded(message));
         self.all.push(Diagnostic { severity, message, file, span, help: None, notes: Vec::new() });
         let last = self.all.len() - 1;
         &mut self.all[last]
     }
+}
+
+/// Longest text of a diagnostic in characters.
+const MAX_TEXT: usize = 600;
+
+/// A text without its middle, if it is too long: a scene may hold names of megabytes.
+fn bounded(text: String) -> String {
+    let characters = text.chars().count();
+    if characters <= MAX_TEXT {
+        return text;
+    }
+    let first: String = text.chars().take(MAX_TEXT / 2).collect();
+    let last: String = text.chars().skip(characters - MAX_TEXT / 2).collect();
+    format!("{first} … {last}")
 }
 
 /// Joins words for a sentence: `a`, `b` and `c`.
@@ -119,8 +133,10 @@ pub(crate) fn listed<S: AsRef<str>>(words: &[S]) -> String {
 /// The candidate with the smallest edit distance, if that is at most a third of the word's length (at least 1). Of
 /// equals, the first.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (word.chars().count() / 3).max(1);
-    let near = candidates.into_iter().map(|candidate| (changes(word, candidate), candidate));
+    let letters = word.chars().count();
+    let limit = (letters / 3).max(1);
+    let candidates = candidates.into_iter().filter(|one| letters.abs_diff(one.chars().count()) <= limit);
+    let near = candidates.map(|candidate| (changes(word, candidate), candidate));
     let best = near.min_by_key(|&(changes, _)| changes)?;
     (best.0 <= limit).then_some(best.1)
 }

@@ -95,8 +95,8 @@ node_table! {
     "Quality Settings" {
         /// Simple: the size of the angle. High Quality: the angle with its sign, for cloth that is bent at rest. Flip Tracking: also beyond 180°.
         BEND_SOLVER: Choice = choice("bendSolver", "bnsl", 1, &[(0, "Simple"), (1, "High Quality"), (2, "Flip Tracking")]).solved("nucleus_core::constraints::angle");
-        /// Order of contact and shape attraction in a step. Contact is always last here, as at 1 in Maya.
-        COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).solved("nucleus_core::schedule");
+        /// Order of contact and shape attraction in a step.
+        COLLIDE_LAST_THRESHOLD: f64 = float("collideLastThreshold", "clth", 0.2).soft(0.0, 1.0).elsewhere("contact is always last, as at 1 in Maya");
         /// Solves links outwards from constrained points, within each block of points. Contacts are solved after links at any value.
         SORT_LINKS: bool = toggle("sortLinks", "stlk", false).solved("nucleus_core::model::link_order").fixed();
         /// Sequential: links are solved one after another (Gauss-Seidel). Parallel: all from the same state (Jacobi), without bias by order but with slower convergence.
@@ -125,7 +125,7 @@ node_table! {
         WEAVE_ANGLE_MAP: f64 = texture("weaveAngleMap", "weaveAngleMap", 1.0).solved("nucleus_graph::compile::weave").fixed().extension();
         /// Factor on weave angle, per point. The warp of a face has the mean angle of its points.
         WEAVE_ANGLE_PER_VERTEX: Vec<f64> = floats("weaveAnglePerVertex", "weaveAnglePerVertex").solved("nucleus_graph::compile::weave").fixed().extension();
-        /// Source of the map of weave angle: none, a value per point, or a texture.
+        /// Source of the map of weave angle: none, a value per point, or a texture. Default: what is given.
         WEAVE_ANGLE_MAP_TYPE: Choice = choice("weaveAngleMapType", "weaveAngleMapType", 2, MAP_TYPES).solved("nucleus_graph::compile::weave").fixed().extension();
         /// Membrane stiffness of woven cloth along the warp. Below 0: that of stretch.
         WARP_STIFFNESS: f64 = float("warpStiffness", "warpStiffness", -1.0).min(-1.0).soft(-1.0, 20000.0).unit("N/m").solved("nucleus_core::constraints::weave").extension();
@@ -208,31 +208,31 @@ node_table! {
         WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv").solved("nucleus_graph::compile::input_mesh");
         /// Height of the wrinkles of the wrinkle map.
         WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0).solved("nucleus_graph::compile::input_mesh");
-        /// Source of the map of stretch: none, a value per point, or a texture.
+        /// Source of the map of stretch: none, a value per point, or a texture. Default: what is given.
         STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of compression: none, a value per point, or a texture.
+        /// Source of the map of compression: none, a value per point, or a texture. Default: what is given.
         COMPRESSION_MAP_TYPE: Choice = choice("compressionMapType", "cmmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of bend: none, a value per point, or a texture.
+        /// Source of the map of bend: none, a value per point, or a texture. Default: what is given.
         BEND_MAP_TYPE: Choice = choice("bendMapType", "bdmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of bend angle dropoff: none, a value per point, or a texture.
+        /// Source of the map of bend angle dropoff: none, a value per point, or a texture. Default: what is given.
         BEND_ANGLE_DROPOFF_MAP_TYPE: Choice = choice("bendAngleDropoffMapType", "bamt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of restitution angle: none, a value per point, or a texture.
+        /// Source of the map of restitution angle: none, a value per point, or a texture. Default: what is given.
         RESTITUTION_ANGLE_MAP_TYPE: Choice = choice("restitutionAngleMapType", "ramt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of rigidity: none, a value per point, or a texture.
+        /// Source of the map of rigidity: none, a value per point, or a texture. Default: what is given.
         RIGIDITY_MAP_TYPE: Choice = choice("rigidityMapType", "rmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps");
-        /// Source of the map of deform: none, a value per point, or a texture.
+        /// Source of the map of deform: none, a value per point, or a texture. Default: what is given.
         DEFORM_MAP_TYPE: Choice = choice("deformMapType", "dmmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps");
-        /// Source of the map of input attract: none, a value per point, or a texture.
+        /// Source of the map of input attract: none, a value per point, or a texture. Default: what is given.
         INPUT_ATTRACT_MAP_TYPE: Choice = choice("inputAttractMapType", "iamt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps");
-        /// Source of the map of rest length scale: none, a value per point, or a texture.
+        /// Source of the map of rest length scale: none, a value per point, or a texture. Default: what is given.
         REST_LENGTH_SCALE_MAP_TYPE: Choice = choice("restLengthScaleMapType", "rlmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of lift: none, a value per point, or a texture.
+        /// Source of the map of lift: none, a value per point, or a texture. Default: what is given.
         LIFT_MAP_TYPE: Choice = choice("liftMapType", "lfmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of drag: none, a value per point, or a texture.
+        /// Source of the map of drag: none, a value per point, or a texture. Default: what is given.
         DRAG_MAP_TYPE: Choice = choice("dragMapType", "drmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of tangential drag: none, a value per point, or a texture.
+        /// Source of the map of tangential drag: none, a value per point, or a texture. Default: what is given.
         TANGENTIAL_DRAG_MAP_TYPE: Choice = choice("tangentialDragMapType", "tdmt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
-        /// Source of the map of wrinkle: none, a value per point, or a texture.
+        /// Source of the map of wrinkle: none, a value per point, or a texture. Default: what is given.
         WRINKLE_MAP_TYPE: Choice = choice("wrinkleMapType", "wmt", 2, MAP_TYPES).solved("nucleus_graph::compile::input_mesh");
     }
     "Hidden" {

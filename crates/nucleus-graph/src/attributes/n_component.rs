@@ -54,11 +54,11 @@ node_table! {
         WEIGHT_MAP: f64 = texture("weightMap", "wemp", 1.0).solved("nucleus_graph::compile::constraints");
         /// Factor on weight, per point.
         WEIGHT_PER_VERTEX: Vec<f64> = floats("weightPerVertex", "wpv").solved("nucleus_graph::compile::constraints");
-        /// Source of the map of strength: none, a value per point, or a texture.
+        /// Source of the map of strength: none, a value per point, or a texture. Default: what is given.
         STRENGTH_MAP_TYPE: Choice = choice("strengthMapType", "smt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
-        /// Source of the map of glue strength: none, a value per point, or a texture.
+        /// Source of the map of glue strength: none, a value per point, or a texture. Default: what is given.
         GLUE_STRENGTH_MAP_TYPE: Choice = choice("glueStrengthMapType", "gsmt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
-        /// Source of the map of weight: none, a value per point, or a texture.
+        /// Source of the map of weight: none, a value per point, or a texture. Default: what is given.
         WEIGHT_MAP_TYPE: Choice = choice("weightMapType", "wmt", 2, MAP_TYPES).solved("nucleus_graph::compile::constraints");
     }
 }

@@ -26,7 +26,7 @@ node_table! {
     "Quality Settings" {
         /// Moves points inside a closed collider to the nearest surface. Off: they stay inside.
         TRAPPED_CHECK: bool = toggle("trappedCheck", "tpc", true).solved("nucleus_core::contact::depenetration");
-        /// Without effect: cloth that starts inside a collider is depenetrated point by point.
+        /// Speed at which cloth that intersects the collider separates.
         CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).elsewhere("a collider has no intersection contours; `trappedCheck` pushes cloth out of it");
     }
 }

@@ -63,7 +63,7 @@ node_table! {
         SEED: i64 = int("seed", "sd", 1).multi().solved("nucleus_graph::compile::emission");
     }
     "Lifespan" {
-        /// Source of the lifespans: forever, constant, or random.
+        /// Source of the lifespans: forever, constant, random, or one per particle.
         LIFESPAN_MODE: Choice = choice("lifespanMode", "lfm", 0, &[(0, "Live forever"), (1, "Constant"), (2, "Random range"), (3, "lifespanPP only")]).solved("nucleus_graph::compile::emission");
         /// Range of random lifespans.
         LIFESPAN_RANDOM: f64 = float("lifespanRandom", "lfr", 0.0).unit("s").solved("nucleus_graph::compile::emission");

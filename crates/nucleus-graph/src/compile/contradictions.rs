@@ -12,7 +12,8 @@ impl Compiler<'_> {
     /// Warns of settings of an object that another setting of it switches off.
     pub(super) fn warn_of_contradictions(&mut self, object: NodeId) {
         let graph = &self.scene.graph;
-        let (node, nucleus) = (graph.node(object), self.program.node);
+        let node = graph.node(object);
+        let is_classic = self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC;
         let dependencies = DEPENDENCIES
             .iter()
             .flat_map(|Dependency { rows, need, help }| rows.iter().map(move |&row| (row, need, *help)));
@@ -34,9 +35,12 @@ impl Compiler<'_> {
                 Need::On(key) if !graph.is_ever_nonzero(object, key) => {
                     format!("`{}` is false", key.row.name)
                 }
-                Need::Classic if self.start.get(nucleus, &nucleus::RESISTANCE_MODEL) != CLASSIC => {
-                    "`resistanceModel` is physical".to_owned()
+                Need::Given(rows) if !rows.iter().any(|row| graph.is_given_by_name(object, row.name)) => {
+                    let names: Vec<String> = rows.iter().map(|row| format!("`{}`", row.name)).collect();
+                    format!("it needs {}", names.join(" or "))
                 }
+                Need::Classic if !is_classic => "`resistanceModel` is physical".to_owned(),
+                Need::Physical if is_classic => "`resistanceModel` is classic".to_owned(),
                 _ => continue,
             };
             let place = self.scene.source.place(&format!("{}.{}", node.name(), row.name));

@@ -13,8 +13,12 @@ pub(super) enum Need {
     Choice(&'static Key<Choice>, Option<Choice>),
     /// A switch that is ever on.
     On(&'static Key<bool>),
+    /// Any of some other attributes, given.
+    Given(&'static [&'static Attribute]),
     /// The Classic resistance model.
     Classic,
+    /// The Physical resistance model.
+    Physical,
 }
 
 /// Attributes that have no effect without another.
@@ -63,12 +67,16 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
         help: "give `airPushDistance`",
     },
     Dependency {
-        rows: &[&n_base::FIELD_MAGNITUDE.row],
+        rows: &[&n_base::FIELD_MAGNITUDE.row, &n_base::FIELD_DISTANCE.row],
         need: Need::Choice(&n_base::FORCE_FIELD, None),
         help: "write `forceField: singleSided`, `doubleSided` or `alongNormal`",
     },
     Dependency {
-        rows: &[&n_base::POINT_FIELD_MAGNITUDE.row, &n_base::SELF_ATTRACT.row],
+        rows: &[
+            &n_base::POINT_FIELD_MAGNITUDE.row,
+            &n_base::POINT_FIELD_DISTANCE.row,
+            &n_base::SELF_ATTRACT.row,
+        ],
         need: Need::Choice(&n_base::POINT_FORCE_FIELD, None),
         help: "write `pointForceField: worldspace` or `thicknessRelative`",
     },
@@ -99,9 +107,56 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
         help: "give `weaveAngle`",
     },
     Dependency {
-        rows: &[&n_cloth::MINIMAL_STRETCH.row, &n_cloth::MINIMAL_BEND.row],
+        rows: &[
+            &n_cloth::MINIMAL_STRETCH.row,
+            &n_cloth::MINIMAL_BEND.row,
+            &n_cloth::SCALING_RELATION.row,
+            &n_base::MAX_ITERATIONS.row,
+            &n_base::MAX_SELF_COLLISION_ITERATIONS.row,
+            &nucleus::MAX_COLLISION_ITERATIONS.row,
+        ],
         need: Need::Classic,
-        help: "it limits counts: write `resistanceModel: classic`",
+        help: "it is about counts: write `resistanceModel: classic`",
+    },
+    Dependency {
+        rows: &[&nucleus::EVALUATIONS.row, &nucleus::AUTO_EVALUATIONS.row],
+        need: Need::Physical,
+        help: "resistances are counts: write `resistanceModel: physical`, or raise `subSteps`",
+    },
+    Dependency {
+        rows: &[&n_cloth::TETHER_SCALE.row, &n_cloth::LONG_LINKS.row],
+        need: Need::On(&n_cloth::TETHERS),
+        help: "write `tethers: true`",
+    },
+    Dependency {
+        rows: &[&n_cloth::WRINKLE_MAP_SCALE.row],
+        need: Need::Given(&[&n_cloth::WRINKLE_MAP.row, &n_cloth::WRINKLE_PER_VERTEX.row]),
+        help: "give `wrinkleMap` or `wrinklePerVertex`",
+    },
+    Dependency {
+        rows: &[&n_base::CACHE_FILE.row],
+        need: Need::On(&n_base::PLAY_FROM_CACHE),
+        help: "write `playFromCache: true`",
+    },
+    Dependency {
+        rows: &[&n_particle::PARTICLE_SPACING.row],
+        need: Need::Given(&[
+            &n_particle::MINIMUM_CORNER.row,
+            &n_particle::MAXIMUM_CORNER.row,
+            &n_particle::FILL_MESH.row,
+        ]),
+        help: "give `minimumCorner` and `maximumCorner`, or `fillMesh`",
+    },
+    Dependency {
+        rows: &[
+            &particle::EVENT_COUNT.row,
+            &particle::EVENT_RANDOM.row,
+            &particle::EVENT_SPREAD.row,
+            &n_particle::EVENT_PROBABILITY.row,
+            &n_particle::EVENT_PARTICLES.row,
+        ],
+        need: Need::Given(&[&particle::EVENT_EMIT.row, &particle::EVENT_SPLIT.row, &particle::EVENT_DIE.row]),
+        help: "say what happens at a collision: give `eventEmit`, `eventSplit` or `eventDie`",
     },
     Dependency {
         rows: &[

@@ -290,10 +290,10 @@ impl Compiler<'_> {
             return Some(Vec::new());
         }
         let name = graph.node(node).name();
-        for (list, row) in lists.iter().zip(EVENT_ROWS) {
-            let is_valid = |x: &f64| (0.0..=f64::from(u16::MAX)).contains(x);
+        for (list, (row, most)) in lists.iter().zip(EVENT_ROWS) {
+            let is_valid = |x: &f64| (0.0..=most).contains(x);
             let message = match list.iter().find(|x| !is_valid(x)) {
-                Some(bad) => format!("`{row}` of `{name}` must be between 0 and {}, but is {bad}", u16::MAX),
+                Some(bad) => format!("`{row}` of `{name}` must be between 0 and {most}, but is {bad}"),
                 None if list.len() == events || list.is_empty() => continue,
                 None => format!("`{row}` of `{name}` has {} values for {events} events", list.len()),
             };
@@ -335,9 +335,19 @@ impl Compiler<'_> {
     }
 }
 
-/// Names of the lists of events, in the order in which they are read.
-const EVENT_ROWS: [&str; 7] =
-    ["eventCount", "eventEmit", "eventSplit", "eventDie", "eventRandom", "eventSpread", "eventProbability"];
+/// The largest count of an event.
+const MAX_COUNT: f64 = u16::MAX as f64;
+
+/// Names of the lists of events and their largest values, in the order in which they are read.
+const EVENT_ROWS: [(&str, f64); 7] = [
+    ("eventCount", MAX_COUNT),
+    ("eventEmit", MAX_COUNT),
+    ("eventSplit", MAX_COUNT),
+    ("eventDie", 1.0),
+    ("eventRandom", 1.0),
+    ("eventSpread", 1.0),
+    ("eventProbability", 1.0),
+];
 
 /// An expression at each initial place, in scene units.
 fn evaluated(text: &str, places: &[Vector3<f64>]) -> Result<Vec<f64>, String> {

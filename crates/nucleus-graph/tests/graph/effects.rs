@@ -329,3 +329,33 @@ fn settings_without_effect_are_warned_of_with_the_setting_that_is_missing() {
         assert_eq!(warnings(&nodes, ""), [expected]);
     }
 }
+
+#[test]
+fn attributes_that_another_one_switches_off_are_warned_of() {
+    let mesh = r#""m": polyPlane(subdivisions: (2, 2))"#;
+    let cloth = |nucleus: &str, cloth: &str| {
+        format!(r#""n": nucleus({nucleus}), {mesh}, "q": nCloth(inputMesh: "m", {cloth})"#)
+    };
+    let beads = |beads: &str| format!(r#""n": nucleus(), "q": nParticle(position: [(0, 1, 0)], {beads})"#);
+    for (nodes, name) in [
+        (cloth("resistanceModel: classic, evaluations: 48", ""), "evaluations"),
+        (cloth("maxCollisionIterations: 8", ""), "maxCollisionIterations"),
+        (cloth("", "maxSelfCollisionIterations: 8"), "maxSelfCollisionIterations"),
+        (cloth("", "scalingRelation: worldSpace"), "scalingRelation"),
+        (cloth("", "tetherScale: 1.1"), "tetherScale"),
+        (cloth("", "longLinks: true"), "longLinks"),
+        (cloth("", "fieldDistance: 2"), "fieldDistance"),
+        (cloth("", "pointFieldDistance: 3"), "pointFieldDistance"),
+        (cloth("", "wrinkleMapScale: 2"), "wrinkleMapScale"),
+        (cloth("", r#"cacheFile: "none.mcap""#), "cacheFile"),
+        (cloth("", "collideLastThreshold: 0.5"), "collideLastThreshold"),
+        (beads("particleSpacing: 0.1"), "particleSpacing"),
+        (beads("eventProbability: [0.5]"), "eventProbability"),
+    ] {
+        let found = warnings(&nodes, "");
+        let names = |text: &String| text.starts_with(&format!("`{name}`")) && text.contains("has no effect");
+        assert!(found.iter().any(names), "{nodes}: {found:?}");
+    }
+    let classic = cloth("resistanceModel: classic, maxCollisionIterations: 8", "maxIterations: 50");
+    assert_eq!(warnings(&classic, ""), Vec::<String>::new());
+}

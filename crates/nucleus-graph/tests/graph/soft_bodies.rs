@@ -154,7 +154,7 @@ fn settings_that_make_no_sense_are_named_with_what_to_do() {
         ),
         (
             "minimalBend: true",
-            "warning at true: `minimalBend` of `c` has no effect: `resistanceModel` is physical | it limits counts: \
+            "warning at true: `minimalBend` of `c` has no effect: `resistanceModel` is physical | it is about counts: \
              write `resistanceModel: classic`",
         ),
         ("pointMass: -1", "error at -1: `pointMass` of `c` must be at least 0, found -1 | "),
