@@ -91,7 +91,12 @@ impl<W: Write + Seek> Recorder<W> {
         for k in 0..self.tracks.len() {
             let &Track { source, channel, mesh, points, kind, has_moved, .. } = &self.tracks[k];
             match source {
-                Source::Collider(id) if stamp.substep > 0 && !has_moved && !state.collider_moved(id) => {
+                Source::Collider(id)
+                    if stamp.substep > 0
+                        && !has_moved
+                        && !self.marks_time(k)
+                        && !state.collider_moved(id) =>
+                {
                     continue;
                 }
                 Source::Collider(id) => state.collider_positions(id, units, &mut self.values),
@@ -129,6 +134,12 @@ impl<W: Write + Seek> Recorder<W> {
         }
         self.time_samples += 1;
         Ok(())
+    }
+
+    /// Whether an object has a message at every recorded time, moved or not: the first of a run of colliders alone, so that
+    /// each frame has one.
+    fn marks_time(&self, track: usize) -> bool {
+        track == 0 && self.tracks.iter().all(|track| track.kind == ObjectKind::Collider)
     }
 
     /// Writes strain and contact states of a cloth.

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use nucleus_cache::{Detail, Playback, RunInfo};
+use nucleus_cache::{Detail, Playback, Recorder, RunInfo};
 
 use nucleus_core::ContactState;
 
@@ -88,6 +88,20 @@ fn a_collider_is_recorded_only_when_it_moves() {
     let (before, after) = (cache.end_of(SHOVE - 1).unwrap(), cache.end_of(END).unwrap());
     assert_eq!(cache.positions(1, before).unwrap()[0], [0.0, -100.0, 0.0]);
     assert_eq!(cache.positions(1, after).unwrap()[0], [100.0, -100.0, 0.0]);
+}
+
+#[test]
+fn a_run_of_colliders_alone_has_every_frame_though_nothing_moves_in_most() {
+    let (file, run) = (falling::Shared::default(), falling::run_info());
+    let colliders = falling::objects().split_off(1);
+    let mut recorder = Recorder::to_writer(file.clone(), &run, colliders).unwrap();
+    falling::record(&mut recorder, run.end).unwrap();
+    recorder.finish().unwrap();
+    let mut cache = Playback::read(Cursor::new(file.contents())).unwrap();
+    assert_eq!(cache.time_samples().len() as i32, END - START + 1);
+    assert!(cache.corruption().is_intact(), "{}", cache.corruption());
+    let after = cache.end_of(END).unwrap();
+    assert_eq!(cache.positions(0, after).unwrap()[0], [100.0, -100.0, 0.0]);
 }
 
 #[test]
