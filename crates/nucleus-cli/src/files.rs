@@ -32,6 +32,8 @@ pub fn memory_limit() -> Memory {
 /// The text of a scene file.
 pub fn scene_text(path: &Path) -> Result<String> {
     refuse_maya_scene(path)?;
+    let name = path.display();
+    ensure!(!path.is_file() || !is_cache(path), "`{name}` is a cache: `nucleus play {name}` plays it");
     read_text(path, memory_limit()).map_err(|error| anyhow!(error))
 }
 
@@ -151,6 +153,8 @@ pub fn refuse_own_input(input: &Path, out: &Path) -> Result<()> {
 /// Opens a cache.
 pub fn open_cache(path: &Path) -> Result<Playback> {
     refuse_maya_scene(path)?;
+    let (name, is_scene) = (path.display(), path.extension().is_some_and(|end| end == "ron"));
+    ensure!(!is_scene || !path.is_file(), "`{name}` is a scene: `nucleus run {name}` records its cache");
     Playback::open(path).map_err(|error| match error {
         OpenError::Io { .. } if nucleus_cache::part_path(path).exists() => {
             let part = nucleus_cache::part_path(path);
@@ -173,6 +177,12 @@ pub fn open_cache_and_warn(path: &Path) -> Result<Playback> {
         say!("warning: `{}`: {}", path.display(), cache.corruption());
     }
     Ok(cache)
+}
+
+/// Makes the folder of a file that is to be written, if there is none.
+pub fn make_folder_of(path: &Path) -> Result<()> {
+    let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) else { return Ok(()) };
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder `{}`", folder.display()))
 }
 
 /// Whether a cache has an object of particles.

@@ -16,6 +16,7 @@ use nucleus_graph::scene::Scene;
 use nucleus_measure::result_cache::Fingerprint;
 use nucleus_measure::trade::Setting;
 
+use crate::files;
 use crate::initial_state::InitialState;
 use crate::options::{Channels, Moments, Scalar};
 
@@ -75,6 +76,7 @@ pub fn begin<R: Real>(
         ..of_scene(simulation, scene)?
     };
     let objects = objects(simulation);
+    files::make_folder_of(out)?;
     let recorder = match options.force {
         true => Recorder::replace(out, &run, objects),
         false => Recorder::create(out, &run, objects),

@@ -44,14 +44,16 @@ impl Summary<'_> {
         }
     }
 
-    /// Whether a check has a result: a run that ended early says nothing about later frames.
+    /// Whether a check has a result: a run that ended early says nothing about later frames, and one of the start frame
+    /// alone about none.
     fn is_evaluated(&self, outcome: &checks::Outcome) -> bool {
-        outcome.worst.is_some() || matches!(self.ending, Ending::Done)
+        let has_frames = self.frames.0 < self.frames.1;
+        outcome.worst.is_some() || has_frames && matches!(self.ending, Ending::Done)
     }
 
     fn is_clean(&self) -> bool {
         self.audit.is_none_or(|audit| audit.account().is_clean())
-            && self.checks.iter().all(|check| check.passed)
+            && self.checks.iter().all(|check| check.passed || !self.is_evaluated(check))
             && self.unresolved_contact().is_empty()
     }
 

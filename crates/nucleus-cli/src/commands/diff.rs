@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use nucleus_cache::{Comparison, Difference, Playback, PointDifference, compare};
+use nucleus_cache::{Comparison, Detail, Difference, Playback, PointDifference, compare};
 use nucleus_maya::ncache::NCache;
 use serde_json::{Value, json};
 
@@ -43,9 +43,10 @@ impl Diff {
         }
         let mut second = files::open_cache_and_warn(&self.second)?;
         let comparison = compare(&mut first, &mut second, self.tolerance)?;
+        let moments = Moments { have_substeps: first.run().detail == Detail::Substeps };
         match self.json {
-            true => output::print_json(&as_json(&comparison))?,
-            false => output::print(&self.as_text(&comparison)?)?,
+            true => output::print_json(&as_json(&comparison, moments))?,
+            false => output::print(&self.as_text(&comparison, moments)?)?,
         }
         Ok(if comparison.differences.is_empty() { Outcome::Success } else { Outcome::Problem })
     }
@@ -72,25 +73,25 @@ impl Diff {
         Ok(if within { Outcome::Success } else { Outcome::Problem })
     }
 
-    fn as_text(&self, comparison: &Comparison) -> Result<String, std::fmt::Error> {
-        let moments = figures::count(comparison.time_samples, "moment");
+    fn as_text(&self, comparison: &Comparison, moments: Moments) -> Result<String, std::fmt::Error> {
+        let compared = figures::count(comparison.time_samples, "moment");
         if comparison.differences.is_empty() {
             return Ok(match self.tolerance > 0.0 {
-                true => format!("positions equal within the tolerance, {moments} compared\n"),
-                false => format!("equal in every bit, {moments} compared\n"),
+                true => format!("positions equal within the tolerance, {compared} compared\n"),
+                false => format!("equal in every bit, {compared} compared\n"),
             });
         }
         let mut text = String::new();
         for difference in &comparison.differences {
-            writeln!(text, "{}", self.line(difference))?;
+            writeln!(text, "{}", self.line(difference, moments))?;
         }
         if let Some(largest) = &comparison.largest {
             let (point, distance) = largest.farthest;
             writeln!(
                 text,
-                "largest: {} at {}, `{}` point {point}; root mean square {} over {moments}",
+                "largest: {} at {}, `{}` point {point}; root mean square {} over {compared}",
                 figures::number(distance),
-                place(largest),
+                moments.text(largest.frame, largest.substep),
                 largest.object,
                 figures::number(comparison.rms),
             )?;
@@ -98,34 +99,37 @@ impl Diff {
         Ok(text)
     }
 
-    fn line(&self, difference: &Difference) -> String {
+    fn line(&self, difference: &Difference, moments: Moments) -> String {
         let name = |in_first: &bool| if *in_first { self.first.display() } else { self.second.display() };
         match difference {
             Difference::Object { name: object, in_first } => {
                 format!("object `{object}` is in `{}` only", name(in_first))
             }
             Difference::Mesh { name, frame, substep } => {
-                format!(
-                    "the meshes of object `{name}` differ in faces or points at frame {frame} substep {substep}"
-                )
+                let place = moments.text(*frame, *substep);
+                format!("the meshes of object `{name}` differ in faces or points at {place}")
             }
             Difference::TimeSample { frame, in_first, .. } => {
                 format!("frame {frame} is the first that is in `{}` only", name(in_first))
             }
             Difference::Values { name, values, frame, substep, point, points } => format!(
-                "{values} differ first in `{name}`: frame {frame} substep {substep}, point {point}; {} differ there",
-                figures::count(*points, "point")
+                "{values} differ first in `{name}`: {}, point {point}; {}",
+                moments.text(*frame, *substep),
+                differing(*points)
             ),
             Difference::Points(found) => format!(
-                "first in `{}`: {}, point {} by {}; {} differ there, point {} most, by {}",
+                "first in `{}`: {}, point {} by {}; {}, point {} most, by {}",
                 found.object,
-                place(found),
+                moments.text(found.frame, found.substep),
                 found.point,
                 figures::number(found.distance),
-                figures::count(found.points, "point"),
+                differing(found.points),
                 found.farthest.0,
                 figures::number(found.farthest.1),
             ),
+            Difference::Damaged { frame, in_first } => {
+                format!("frame {frame} of `{}` is damaged and was not compared", name(in_first))
+            }
             _ => "something else differs".to_owned(),
         }
     }
@@ -232,33 +236,65 @@ impl Deviation {
     }
 }
 
-/// `frame 12`, `frame 12 substep 3`.
-fn place(found: &PointDifference) -> String {
-    format!("frame {} substep {}", found.frame, found.substep)
+/// How moments are named: a substep only where the first cache holds all of them, else its number is not known.
+#[derive(Clone, Copy)]
+struct Moments {
+    have_substeps: bool,
 }
 
-fn as_json(comparison: &Comparison) -> Value {
+impl Moments {
+    /// `frame 12`, `frame 12 substep 3`.
+    fn text(self, frame: i32, substep: u32) -> String {
+        match self.have_substeps {
+            true => format!("frame {frame} substep {substep}"),
+            false => format!("frame {frame}"),
+        }
+    }
+
+    fn substep(self, substep: u32) -> Option<u32> {
+        self.have_substeps.then_some(substep)
+    }
+}
+
+/// `1 point differs there`.
+fn differing(points: usize) -> String {
+    let verb = if points == 1 { "differs" } else { "differ" };
+    format!("{} {verb} there", figures::count(points, "point"))
+}
+
+fn as_json(comparison: &Comparison, moments: Moments) -> Value {
     let points = |found: &PointDifference| {
         json!({
-            "object": found.object, "frame": found.frame, "substep": found.substep, "point": found.point,
-            "distance": found.distance, "points": found.points,
+            "object": found.object, "frame": found.frame, "substep": moments.substep(found.substep),
+            "point": found.point, "distance": found.distance, "points": found.points,
             "farthest": { "point": found.farthest.0, "distance": found.farthest.1 },
         })
     };
+    let largest = |found: &PointDifference| {
+        let (point, distance) = found.farthest;
+        json!({
+            "object": found.object, "frame": found.frame, "substep": moments.substep(found.substep),
+            "point": point, "distance": distance, "points": found.points,
+        })
+    };
+    let side = |in_first: &bool| 1 + u8::from(!in_first);
     let differences = comparison.differences.iter().map(|difference| match difference {
-        Difference::Object { name, in_first } => {
-            json!({ "object": name, "only_in": 1 + u8::from(!in_first) })
-        }
+        Difference::Object { name, in_first } => json!({ "object": name, "only_in": side(in_first) }),
         Difference::Mesh { name, frame, substep } => {
-            json!({ "mesh": name, "frame": frame, "substep": substep })
+            json!({ "mesh": name, "frame": frame, "substep": moments.substep(*substep) })
         }
         Difference::TimeSample { frame, substep, in_first } => {
-            json!({ "moment": { "frame": frame, "substep": substep }, "only_in": 1 + u8::from(!in_first) })
+            let moment = json!({ "frame": frame, "substep": moments.substep(*substep) });
+            json!({ "moment": moment, "only_in": side(in_first) })
         }
         Difference::Points(found) => json!({ "points": points(found) }),
         Difference::Values { name, values, frame, substep, point, points } => json!({
-            "values": values, "object": name, "frame": frame, "substep": substep, "point": point, "points": points,
+            "values": values, "object": name, "frame": frame, "substep": moments.substep(*substep), "point": point,
+            "points": points,
         }),
+        Difference::Damaged { frame, in_first } => {
+            json!({ "damaged": { "frame": frame, "in": side(in_first) } })
+        }
         _ => Value::Null,
     });
     json!({
@@ -266,6 +302,6 @@ fn as_json(comparison: &Comparison) -> Value {
         "moments": comparison.time_samples,
         "differences": differences.collect::<Vec<_>>(),
         "rms": comparison.rms,
-        "largest": comparison.largest.as_ref().map(points),
+        "largest": comparison.largest.as_ref().map(largest),
     })
 }

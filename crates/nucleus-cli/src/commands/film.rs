@@ -1,7 +1,6 @@
 //! Output of `nucleus render`: a still, an animation, a film by ffmpeg, or a sequence of pictures.
 
 use std::fmt;
-use std::fs;
 use std::io::{ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -68,9 +67,6 @@ pub fn write<R: Read + Seek>(
             file.commit().with_context(unwritten)?;
         }
         OutputKind::Sequence => {
-            if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-                fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
-            }
             each(film, report, |image, frame| {
                 let out = numbered(out, frame);
                 Ok(if is_exr(&out) { image.write_exr(out) } else { image.write_png_fast(out) }?)

@@ -206,10 +206,7 @@ fn write(path: &Path, text: &str, force: bool) -> Result<()> {
         Err(_) if path.exists() => bail!("`{}` is no file that can be replaced", path.display()),
         _ => {}
     }
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot make the folder `{}`", folder.display()))?;
-    }
+    files::make_folder_of(path)?;
     atomic_file::write(path, text.as_bytes())
         .map_err(|error| anyhow!("cannot write `{}`: {error}", path.display()))
 }

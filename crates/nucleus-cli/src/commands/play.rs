@@ -45,6 +45,11 @@ impl Play {
             false => {
                 let run = Run::of(self.file, self.force);
                 let cache = run.out()?;
+                let path = cache.display();
+                ensure!(
+                    self.force || !cache.exists(),
+                    "`{path}` exists: `nucleus play {path}` plays it, `--force` runs the scene again"
+                );
                 match run.run()? {
                     ended @ (Outcome::InvalidInput | Outcome::Interrupted | Outcome::Busy) => {
                         return Ok(ended);

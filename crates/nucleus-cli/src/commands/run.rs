@@ -115,7 +115,8 @@ impl Run {
         match &self.out {
             Some(out) => files::named_as_cache(out).map(Path::to_owned),
             None => {
-                let stem = self.scene.file_stem().context("the scene has no name")?;
+                let no_file = || format!("`{}` is a folder, not a scene", self.scene.display());
+                let stem = self.scene.file_stem().with_context(no_file)?;
                 Ok(Path::new(stem).with_extension("mcap"))
             }
         }

@@ -116,11 +116,11 @@ impl SceneInfo {
     }
 }
 
-/// `select hand: sheet.vtx[3, 5:8], 5 points`.
+/// `select hand: sheet.vtx[3] sheet.vtx[5:8], 5 points`.
 fn selection_line(selection: &NamedSelection) -> String {
     let NamedSelection { owner, object, kind, elements, .. } = selection;
     let count = figures::count(elements.len(), kind.noun());
-    format!("select {owner}: {object}.{}[{}], {count}", kind.word(), ranges(elements))
+    format!("select {owner}: {}, {count}", components(&format!("{object}.{}", kind.word()), elements))
 }
 
 fn selection_json(selection: &NamedSelection) -> Value {
@@ -128,8 +128,8 @@ fn selection_json(selection: &NamedSelection) -> Value {
     json!({ "owner": owner, "object": object, "kind": kind.noun(), "count": elements.len(), "elements": elements })
 }
 
-/// `3, 5:8`: numbers in order, runs as their ends; the first twelve.
-fn ranges(elements: &[u32]) -> String {
+/// `sheet.vtx[3] sheet.vtx[5:8]`: numbers in order, runs as their ends; the first twelve.
+fn components(of: &str, elements: &[u32]) -> String {
     let mut sorted = elements.to_vec();
     sorted.sort_unstable();
     let mut runs: Vec<[u32; 2]> = Vec::new();
@@ -139,12 +139,12 @@ fn ranges(elements: &[u32]) -> String {
             _ => runs.push([at; 2]),
         }
     }
-    let more = if runs.len() > 12 { ", ..." } else { "" };
+    let more = if runs.len() > 12 { " ..." } else { "" };
     let run = |[first, last]: &[u32; 2]| match first == last {
-        true => first.to_string(),
-        false => format!("{first}:{last}"),
+        true => format!("{of}[{first}]"),
+        false => format!("{of}[{first}:{last}]"),
     };
-    runs.iter().take(12).map(run).collect::<Vec<_>>().join(", ") + more
+    runs.iter().take(12).map(run).collect::<Vec<_>>().join(" ") + more
 }
 
 impl NucleusFacts {

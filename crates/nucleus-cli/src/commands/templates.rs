@@ -65,7 +65,10 @@ impl Template {
 impl New {
     /// Writes the file, and its mesh if it has one; prints the command that runs it.
     pub fn run(self) -> Result<Outcome> {
-        let scene = self.scene.unwrap_or_else(|| self.template.name().into());
+        let mut scene = self.scene.unwrap_or_else(|| self.template.name().into());
+        if scene.extension().is_none() {
+            scene.set_extension("ron");
+        }
         let path = scene.display();
         let mut text = self.template.text().to_owned();
         if self.template == Template::Garment {

@@ -143,9 +143,12 @@ fn a_file_that_is_no_cache_is_not_overwritten() {
 fn a_cache_that_cannot_be_created_is_refused_with_one_reason() {
     let folder = folder();
     scene(folder.path(), 5, "");
-    let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "no/such/x.mcap"]);
-    assert_refused(&output, "cannot write `no/such/x.mcap`: No such file");
-    assert_eq!(stderr(&output).matches("No such file").count(), 1);
+    let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "drape.ron/x.mcap"]);
+    assert_refused(&output, "cannot make the folder `drape.ron`");
+    assert_eq!(stderr(&output).matches("drape.ron").count(), 1);
+    let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "made/here/x.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(folder.path().join("made/here/x.mcap").exists());
 }
 
 #[test]
