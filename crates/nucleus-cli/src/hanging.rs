@@ -16,10 +16,11 @@ const WANTED: f64 = 0.01;
 pub fn hints(program: &Program) -> Vec<String> {
     let mut hints = Vec::new();
     for (nucleus, input) in program.nuclei().iter().zip(program.first_inputs()) {
-        for (index, (id, cloth)) in nucleus.cloths().zip(nucleus.model().cloths()).enumerate() {
+        for (index, id) in nucleus.cloths().enumerate() {
             let own = |kind: &ObjectKind| matches!(kind, ObjectKind::Cloth(cloth) if cloth.0 == id);
             let name = program.objects().iter().find(|object| own(&object.kind)).map(|object| &object.name);
-            let found = hanging(index, cloth, &input).filter(|found| found.strain >= MIN_STRAIN);
+            let found =
+                hanging(index, nucleus.model().cloths(), &input).filter(|found| found.strain >= MIN_STRAIN);
             hints.extend(name.zip(found).map(|(name, found)| hint(&found, name)));
         }
     }

@@ -3,9 +3,10 @@
 //! In a step of h seconds a sweep holds an edge no stiffer than about m / h², whatever its resistance is. An edge of length
 //! d between points of mass m that carries N times that mass at rest is therefore stretched by N g h² / d: a small mesh
 //! needs short steps. Where cloth hangs by P pins, each edge beside them carries a P-th of its mass; where the mass is
-//! uniform that is (points - P) / P points. Elsewhere an edge carries at most half the cloth in a line, as over the edge of
-//! a table.
+//! uniform that is (points - P) / P points, and in proportion more where particles lie in it, as water in a bag. Elsewhere
+//! an edge carries at most half the cloth in a line, as over the edge of a table.
 
+use nalgebra::Vector3;
 use nucleus_core::{COUNT_PERIOD, Cloth, FrameInput, PhysicalStiffness, PointId, ResistanceModel};
 
 use crate::attributes::nucleus;
@@ -37,29 +38,30 @@ pub const MAX_BUDGET: f64 = 2_000.0;
 const STIFFER: f64 = 4.0;
 
 /// The estimate for the `index`th cloth of a nucleus; `None` where sweeps are not what limits it.
-pub fn hanging(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<Hanging> {
+pub fn hanging(index: usize, cloths: &[Cloth], input: &FrameInput) -> Option<Hanging> {
     let ResistanceModel::Physical { evaluations } = input.resistance else { return None };
-    let settings = input.cloths.get(index)?;
+    let (cloth, settings) = (cloths.get(index)?, input.cloths.get(index)?);
     let points = cloth.surface.positions.len();
     let pins = pins(index, input);
     if !cloth.lists.stretch || pins.is_empty() || settings.tethers.is_some() || !settings.feels_gravity {
         return None;
     }
     let step = COUNT_PERIOD / evaluations;
-    let strain = load_at_pins(cloth, &pins) * input.gravity.norm() * step * step / mean_edge(cloth)?;
+    let load = load_at_pins(cloth, &pins) * (1.0 + carried(index, cloths, input));
+    let strain = load * input.gravity.norm() * step * step / mean_edge(cloth)?;
     Some(Hanging { points, pins: pins.len(), evaluations, strain })
 }
 
 /// The evaluations in 1/24 s that leave a cloth stretched by about 1 % at rest; `None` where nothing stretches it.
-fn evaluations(index: usize, cloth: &Cloth, input: &FrameInput) -> Option<f64> {
-    let settings = input.cloths.get(index)?;
+fn evaluations(index: usize, cloths: &[Cloth], input: &FrameInput) -> Option<f64> {
+    let (cloth, settings) = (cloths.get(index)?, input.cloths.get(index)?);
     let (edge, gravity) = (mean_edge(cloth)?, input.gravity.norm());
     if !cloth.lists.stretch || !settings.feels_gravity || gravity == 0.0 || settings.is_driven {
         return None;
     }
     let (pins, across) = (pins(index, input), extent(cloth) / edge / 2.0);
     let held = if settings.tethers.is_none() { &pins[..] } else { &[] };
-    let load = load_at_pins(cloth, held).max(across);
+    let load = (load_at_pins(cloth, held) * (1.0 + carried(index, cloths, input))).max(across);
     let step = (WANTED * edge / (load * gravity)).sqrt();
     let PhysicalStiffness { stretch, warp, weft, .. } = PhysicalStiffness::of(settings);
     let mass = cloth.point_masses().iter().sum::<f64>() / cloth.surface.positions.len() as f64;
@@ -77,8 +79,8 @@ pub(super) fn choose(scene: &Scene, program: &mut Program, findings: &mut Findin
         let is_chosen = node.get(&nucleus::AUTO_EVALUATIONS)
             && !graph.is_given(own.node(), &nucleus::EVALUATIONS)
             && matches!(input.resistance, ResistanceModel::Physical { .. });
-        let cloths = own.model().cloths().iter().enumerate().filter(|_| is_chosen);
-        let each = cloths.filter_map(|(index, cloth)| evaluations(index, cloth, &input));
+        let cloths = own.model().cloths();
+        let each = (0..cloths.len()).filter(|_| is_chosen).filter_map(|at| evaluations(at, cloths, &input));
         let most = each.fold(default, f64::max);
         (most > default).then(|| ((most / 10.0 - 1e-9).ceil() * 10.0).min(MAX_BUDGET))
     };
@@ -114,6 +116,24 @@ fn pins(index: usize, input: &FrameInput) -> Vec<PointId> {
 fn load_at_pins(cloth: &Cloth, pins: &[PointId]) -> f64 {
     let free = cloth.surface.positions.len() - pins.len();
     if pins.is_empty() { 0.0 } else { lightness(cloth, pins) * free as f64 / pins.len() as f64 }
+}
+
+/// The mass of the particles that start in the box round a cloth, which is what it holds if it hangs, over its own mass.
+fn carried(index: usize, cloths: &[Cloth], input: &FrameInput) -> f64 {
+    let cloth = &cloths[index];
+    let mut bounds = [Vector3::repeat(f64::MAX), Vector3::repeat(f64::MIN)];
+    for point in &cloth.surface.positions {
+        bounds = [bounds[0].inf(point), bounds[1].sup(point)];
+    }
+    let is_inside =
+        |point: &Vector3<f64>| (0..3).all(|k| bounds[0][k] <= point[k] && point[k] <= bounds[1][k]);
+    let particles = cloths.iter().zip(&input.cloths).filter(|(other, settings)| {
+        other.surface.faces.iter().next().is_none() && settings.collide && settings.feels_gravity
+    });
+    let held = particles.flat_map(|(other, _)| other.surface.positions.iter().zip(other.point_masses()));
+    let held: f64 = held.filter(|(point, _)| is_inside(point)).map(|(_, mass)| mass).sum();
+    let own: f64 = cloth.point_masses().iter().sum();
+    if own > 0.0 && input.cloths[index].collide { held / own } else { 0.0 }
 }
 
 /// The mean mass of a point over that of the points beside the pins; 1 without pins. By faces, because a point of the

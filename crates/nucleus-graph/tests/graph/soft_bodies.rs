@@ -235,3 +235,21 @@ fn cloth_that_is_not_dynamic_follows_its_input_mesh_through_a_collider_without_a
     assert_eq!(unresolved("false"), 0);
     assert!(unresolved("true") > 0, "dynamic cloth whose points are all locked is carried through the box");
 }
+
+#[test]
+fn hanging_cloth_takes_the_evaluations_that_the_weight_of_its_content_needs() {
+    let budget = |content: f64, place: f64| {
+        let nodes = format!(
+            r#""n": nucleus(), "m": polyPlane(width: 0.1, height: 0.1, subdivisions: (20, 20), rotateX: 90),
+            "q": nCloth(inputMesh: "m", pointMass: 0.2), "rail": dynamicConstraint(constraintType: transform,
+            components: ["q.vtx[0]", "q.vtx[20]"]), "p": nParticle(position: [(0, {place}, 0)], pointMass: {content})"#
+        );
+        program(&of_nodes(&nodes, "")).budget(0).expect("more than the default")
+    };
+    let own = 0.2 * 0.01;
+    let empty = budget(1e-9, 0.0);
+    // The strain at the pins is the load times h².
+    let full = budget(3.0 * own, 0.0);
+    assert!((full / empty - 2.0).abs() < 0.05, "{full} for {empty}");
+    assert_eq!(budget(3.0 * own, 1.0), empty, "what starts above it may fall elsewhere");
+}

@@ -353,8 +353,7 @@ fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
 /// Whether a cloth of the first nucleus hangs by pins at the first frame, without tethers, and sweeps limit its stretch.
 fn hangs(program: &Program, object: &Object) -> bool {
     let ObjectKind::Cloth(ClothId(id)) = object.kind else { return false };
-    let cloth = program.model().cloths().get(id as usize);
-    cloth.is_some_and(|cloth| hanging(id as usize, cloth, &program.first_input()).is_some())
+    hanging(id as usize, program.model().cloths(), &program.first_input()).is_some()
 }
 
 /// Triangles of all cloth, with the points of all cloth numbered through.
