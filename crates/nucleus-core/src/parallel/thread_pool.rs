@@ -23,6 +23,9 @@ type Work = *const (dyn Fn(usize) + Sync);
 const SPINS_BEFORE_YIELD: u32 = 2_000;
 const SPINS_BEFORE_SLEEP: u32 = 4_000;
 
+/// Threads of a pool, at most; more take memory and run nothing.
+const MAX_THREADS: usize = 1024;
+
 /// Items per task of [`ThreadPool::least`].
 const ITEMS_PER_TASK: usize = 512;
 
@@ -59,7 +62,8 @@ pub struct ThreadPool {
 }
 
 impl ThreadPool {
-    /// A pool of `threads` in all, the caller's own among them; zero counts as one.
+    /// A pool of `threads` in all, the caller's own among them; zero counts as one, and more than [`MAX_THREADS`] as so
+    /// many.
     pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared {
             ticket: AtomicU64::new(0),
@@ -76,7 +80,7 @@ impl ThreadPool {
             std::thread::Builder::new().name("nucleus".into()).spawn(move || shared.serve())
         };
         // A machine that refuses a thread only makes the pool smaller; the result is the same.
-        let workers = (1..threads).map_while(|k| spawn(k).ok()).collect();
+        let workers = (1..threads.min(MAX_THREADS)).map_while(|k| spawn(k).ok()).collect();
         Self { shared, workers }
     }
 
@@ -239,6 +243,11 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_pool_has_no_more_threads_than_the_limit() {
+        assert!(ThreadPool::new(usize::MAX).workers.len() < MAX_THREADS);
     }
 
     #[test]
