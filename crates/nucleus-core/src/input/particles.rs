@@ -131,6 +131,9 @@ impl ParticleRamp {
     }
 
     /// The factor of a particle.
+    ///
+    /// # Panics
+    /// When there are no samples.
     pub fn factor(&self, facts: &ParticleFacts) -> f64 {
         let away = match self.randomize {
             0.0 => 0.0,

@@ -51,6 +51,14 @@ pub enum BuildError {
     /// The mesh has faces, but none of them has any area.
     #[error("the mesh has no area")]
     NoArea,
+    /// The longest edge of the mesh is too short to be represented.
+    #[error("the longest edge of the mesh is {length:e} m; it must be at least {least:e} m")]
+    TooSmall {
+        /// Its length in metres.
+        length: f64,
+        /// The shortest valid length in metres.
+        least: f64,
+    },
     /// The mesh has no points at all.
     #[error("the mesh has no points")]
     NoPoints,
@@ -64,6 +72,46 @@ pub enum BuildError {
         points: usize,
         /// The room for particles.
         capacity: usize,
+    },
+    /// More room for particles than there can be.
+    #[error("there is room for {capacity} particles; an object has {most} at most")]
+    TooManyParticles {
+        /// The room for particles.
+        capacity: usize,
+        /// The largest room.
+        most: usize,
+    },
+    /// The radius of particles is negative, NaN or too large.
+    #[error("the radius of the particles must be from 0 to {MAX_COORDINATE:e} m, not {radius}")]
+    BadRadius {
+        /// The given value.
+        radius: f64,
+    },
+    /// A collision event has a number that is NaN or infinite.
+    #[error("the probability, spread or lifespan of collision event {event} is not a usable number")]
+    BadEvent {
+        /// The event, by its index.
+        event: usize,
+    },
+    /// There is no such cloth.
+    #[error("there is no cloth {cloth}")]
+    NoCloth {
+        /// Its id.
+        cloth: u32,
+    },
+    /// There is no such collider.
+    #[error("there is no collider {collider}")]
+    NoCollider {
+        /// Its id.
+        collider: u32,
+    },
+    /// The links of a cloth are to be sorted from a point that does not exist.
+    #[error("links cannot be sorted from point {point}: there are only {points} points")]
+    NoSource {
+        /// The point, in the mesh's order.
+        point: u32,
+        /// Their number.
+        points: usize,
     },
     /// A column of the start has not one entry per point.
     #[error("there are {given} {what} to start from, but {points} points")]

@@ -6,9 +6,9 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use crate::input::particles::{CollisionEvent, ParticleRamp};
-use crate::input::validation::is_in_range;
 use crate::input::{ClothId, ColliderId, PointId};
 use crate::model::build_error::BuildError;
+use crate::model::refusals::{check_particles, check_start, check_surface, check_warp};
 use crate::model::surface::Surface;
 use crate::model::topology::point_areas;
 use crate::model::vertex_maps::VertexMaps;
@@ -258,6 +258,9 @@ impl ModelBuilder {
     }
 
     /// The positions of a cloth at the start, in metres.
+    ///
+    /// # Panics
+    /// When there is no such cloth.
     pub fn positions(&self, cloth: ClothId) -> &[Vector3<f64>] {
         self.cloths[cloth.index()].positions()
     }
@@ -279,8 +282,20 @@ impl ModelBuilder {
     }
 
     /// Sets the order in which the links of a cloth are corrected.
-    pub fn set_link_order(&mut self, cloth: ClothId, order: LinkOrder) {
-        self.link_orders[cloth.index()] = order;
+    ///
+    /// # Errors
+    /// When there is no such cloth, or the cloth lacks a point that the order begins at.
+    pub fn set_link_order(&mut self, cloth: ClothId, order: LinkOrder) -> Result<(), BuildError> {
+        let id = cloth.0;
+        let cloth = self.cloths.get(cloth.index()).ok_or(BuildError::NoCloth { cloth: id })?;
+        let points = cloth.surface.positions.len();
+        if let LinkOrder::Outwards(sources) = &order
+            && let Some(point) = sources.iter().find(|point| point.index() >= points)
+        {
+            return Err(BuildError::NoSource { point: point.0, points });
+        }
+        self.link_orders[id as usize] = order;
+        Ok(())
     }
 
     /// The vertex maps of each collider.
@@ -292,9 +307,10 @@ impl ModelBuilder {
     /// the force field have an effect.
     ///
     /// # Errors
-    /// When there is not one factor per point, or one is no number from 0 to 1e6.
+    /// When there is no such collider, there is not one factor per point, or one is no number from 0 to 1e6.
     pub fn set_collider_maps(&mut self, collider: ColliderId, maps: VertexMaps) -> Result<(), BuildError> {
-        maps.check(self.colliders[collider.index()].surface.positions.len())?;
+        let of = self.colliders.get(collider.index());
+        maps.check(of.ok_or(BuildError::NoCollider { collider: collider.0 })?.surface.positions.len())?;
         self.collider_maps[collider.index()] = maps;
         Ok(())
     }
@@ -319,88 +335,4 @@ fn even_masses(cloth: &Cloth) -> Vec<f64> {
             areas.iter().map(|&area| density * if area > 0.0 { area } else { average }).collect()
         }
     }
-}
-
-/// Refuses woven cloth in which a face has no direction of the warp.
-fn check_warp(cloth: &Cloth) -> Result<(), BuildError> {
-    let faces = cloth.surface.faces.len();
-    if !cloth.warp.is_empty() && cloth.warp.len() != faces {
-        return Err(BuildError::WarpCount { given: cloth.warp.len(), faces });
-    }
-    let is_direction = |warp: &Vector3<f64>| is_in_range(warp) && warp.norm() > 0.0;
-    match cloth.warp.iter().position(|warp| !is_direction(warp)) {
-        Some(face) => Err(BuildError::BadWarp { face }),
-        None => Ok(()),
-    }
-}
-
-/// Refuses a start that lacks a point, or has an invalid value.
-fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
-    for (column, [one, what]) in
-        [(&start.positions, ["position", "positions"]), (&start.velocities, ["velocity", "velocities"])]
-    {
-        if !column.is_empty() && column.len() != points {
-            return Err(BuildError::StartCount { what, given: column.len(), points });
-        }
-        if let Some(point) = column.iter().position(|given| !is_in_range(given)) {
-            return Err(BuildError::BadStart { what: one, point });
-        }
-    }
-    Ok(())
-}
-
-/// Refuses particles with faces, more of them than there is room for, and lifespans that are no times.
-fn check_particles(surface: &Surface, particles: &Particles) -> Result<(), BuildError> {
-    let (points, capacity) = (surface.positions.len(), particles.capacity);
-    if points > capacity || capacity == 0 {
-        return Err(BuildError::Capacity { points, capacity });
-    }
-    let lifespans = particles.lifespans.len();
-    if lifespans > 0 && lifespans != points {
-        return Err(BuildError::StartCount { what: "lifespans", given: lifespans, points });
-    }
-    for (given, what) in [(particles.ages.len(), "ages"), (particles.ids.len(), "numbers")] {
-        if given > 0 && given != points {
-            return Err(BuildError::StartCount { what, given, points });
-        }
-    }
-    if !particles.ramps.iter().all(ParticleRamp::is_valid)
-        || particles.ages.iter().any(|age| !age.is_finite())
-        || !surface.faces.is_empty()
-        || particles.lifespans.iter().any(|lifespan| lifespan.is_nan() || *lifespan < 0.0)
-    {
-        return Err(BuildError::BadParticles);
-    }
-    if points > 0 { check_surface(surface) } else { Ok(()) }
-}
-
-/// Refuses meshes that the solver cannot handle.
-fn check_surface(surface: &Surface) -> Result<(), BuildError> {
-    let points = surface.positions.len();
-    if points == 0 {
-        return Err(BuildError::NoPoints);
-    }
-    if let Some(point) = surface.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        return Err(BuildError::NotFinite { point });
-    }
-    if let Some(point) = surface.positions.iter().position(|p| !is_in_range(p)) {
-        return Err(BuildError::TooFar { point });
-    }
-    for (face, corners) in surface.faces.iter().enumerate() {
-        if let Some(&point) = corners.iter().find(|&&point| point as usize >= points) {
-            return Err(BuildError::FaceOutOfRange { face, point, points });
-        }
-        let repeats = (1..corners.len()).any(|k| corners[..k].contains(&corners[k]));
-        if corners.len() < 3 || repeats {
-            return Err(BuildError::DegenerateFace { face });
-        }
-    }
-    let area = |[a, b, c]: [u32; 3]| {
-        let [a, b, c] = [a, b, c].map(|point| surface.positions[point as usize]);
-        (b - a).cross(&(c - a)).norm()
-    };
-    if !surface.faces.is_empty() && !surface.faces.triangles().map(area).any(|area| area > 0.0) {
-        return Err(BuildError::NoArea);
-    }
-    Ok(())
 }

@@ -8,7 +8,7 @@
 //!
 //! | You want to know… | Read |
 //! |---|---|
-//! | what a cloth or collider is built from, and what is refused | [`builder`], [`build_error`] |
+//! | what a cloth or collider is built from, and what is refused | [`builder`], [`build_error`], `refusals.rs` |
 //! | polygon meshes | [`surface`] |
 //! | edges, cross links, seams, areas | `topology.rs` |
 //! | the order of points; the order of links | `order.rs`, `link_order.rs` |
@@ -23,6 +23,7 @@ pub mod builder;
 pub mod geodesic;
 pub mod link_order;
 pub mod order;
+mod refusals;
 pub mod rows;
 pub mod strength_maps;
 pub mod surface;

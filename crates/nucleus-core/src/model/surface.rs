@@ -46,6 +46,9 @@ impl Faces {
     }
 
     /// The points round face `face`.
+    ///
+    /// # Panics
+    /// When there is no such face.
     pub fn face(&self, face: usize) -> &[u32] {
         &self.corners[self.starts[face] as usize..self.starts[face + 1] as usize]
     }

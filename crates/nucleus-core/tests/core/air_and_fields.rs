@@ -191,7 +191,7 @@ fn the_air_of_objects_and_parallel_links_give_the_same_bits_on_any_number_of_thr
             let mut sheet = grid(40, 40, Vec3::x(), -Vec3::y());
             sheet.positions.iter_mut().for_each(|p| p.z += height + 0.05 * (7.0 * p.x).sin());
             let cloth = builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), lists)).expect("a good mesh");
-            builder.set_link_order(cloth, LinkOrder::Parallel);
+            builder.set_link_order(cloth, LinkOrder::Parallel).expect("points of the mesh");
         }
         let wind_field = WindField {
             shadow_distance: 0.5,

@@ -36,7 +36,7 @@ fn cloth(surface: Surface) -> ModelBuilder {
     let mut builder = ModelBuilder::new();
     let lists = ClothLists { shear: false, self_collision: false, signed_bend: true, ..ClothLists::ALL };
     let cloth = builder.cloth(Cloth::new(surface, Mass::PerPoint(1.0), lists)).expect("a good mesh");
-    builder.set_link_order(cloth, LinkOrder::Mesh);
+    builder.set_link_order(cloth, LinkOrder::Mesh).expect("points of the mesh");
     builder
 }
 

@@ -12,7 +12,7 @@ fn run(surface: &Surface, order: LinkOrder, input: &FrameInput, frames: usize) -
     let mut builder = ModelBuilder::new();
     let lists = ClothLists { cross_links: true, ..LINKS };
     let cloth = builder.cloth(Cloth::new(surface.clone(), Mass::PerPoint(0.01), lists)).expect("a good mesh");
-    builder.set_link_order(cloth, order);
+    builder.set_link_order(cloth, order).expect("points of the mesh");
     let mut solver = Solver::<f64>::new(builder, 2);
     (0..frames).for_each(|_| {
         solver.step(input, &mut ());
@@ -56,7 +56,7 @@ fn links_that_are_solved_at_once_keep_momentum_and_length() {
     let mut cloth = Cloth::new(sheet.clone(), Mass::PerPoint(0.01), lists);
     cloth.start.positions = start.clone();
     let cloth = builder.cloth(cloth).expect("a good mesh");
-    builder.set_link_order(cloth, LinkOrder::Parallel);
+    builder.set_link_order(cloth, LinkOrder::Parallel).expect("points of the mesh");
     let mut solver = Solver::<f64>::new(builder, 1);
     let strain = (0..48).map(|_| solver.step(&input, &mut ()).max_strain).last().unwrap_or(1.0);
     sheet.positions = (0..81).map(|point| solver.point(CLOTH, point)).collect();

@@ -144,31 +144,37 @@ impl EvaluationInterval<'_> {
 impl Compiler<'_> {
     /// The order in which the links of each cloth are solved; the constraints are compiled before.
     pub(super) fn order_links(&mut self) {
-        let graph = &self.scene.graph;
-        for (cloth, source) in (0..).map(ClothId).zip(&self.program.cloths) {
-            let node = graph.node(source.node);
-            if !node.node_type().is_a(&n_cloth::N_CLOTH) {
+        let cloths: Vec<NodeId> = self.program.cloths.iter().map(|source| source.node).collect();
+        for (cloth, id) in (0..).map(ClothId).zip(cloths) {
+            if !self.scene.graph.node(id).node_type().is_a(&n_cloth::N_CLOTH) {
                 continue;
             }
-            if self.start.get(source.node, &n_cloth::EVALUATION_ORDER) == PARALLEL {
-                self.program.model.set_link_order(cloth, LinkOrder::Parallel);
-            } else if self.start.get(source.node, &n_cloth::SORT_LINKS) {
-                let held = self.program.attachments.iter().flat_map(|attachment| &attachment.points);
-                let held: Vec<PointId> =
-                    held.filter(|held| held.cloth == cloth).map(|held| held.point).collect();
-                if held.is_empty() {
-                    let place = self.scene.source.place(&format!("{}.sortLinks", node.name()));
-                    let message = format!(
-                        "`sortLinks` of `{}` has no effect: no constraint holds a point of it",
-                        node.name()
-                    );
-                    self.findings.warning(&place, message);
-                }
-                self.program.model.set_link_order(cloth, LinkOrder::Outwards(held));
-            } else if self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC {
-                self.program.model.set_link_order(cloth, LinkOrder::Mesh);
+            let Some(order) = self.link_order(cloth, id) else { continue };
+            if let Err(error) = self.program.model.set_link_order(cloth, order) {
+                let place = self.scene.source.place(self.scene.graph.node(id).name());
+                self.findings.error(&place, error.to_string());
             }
         }
+    }
+
+    /// The order of the links of a cloth; `None` for that of the colours.
+    fn link_order(&mut self, cloth: ClothId, id: NodeId) -> Option<LinkOrder> {
+        if self.start.get(id, &n_cloth::EVALUATION_ORDER) == PARALLEL {
+            return Some(LinkOrder::Parallel);
+        }
+        if !self.start.get(id, &n_cloth::SORT_LINKS) {
+            let model = self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL);
+            return (model == CLASSIC).then_some(LinkOrder::Mesh);
+        }
+        let held = self.program.attachments.iter().flat_map(|attachment| &attachment.points);
+        let held: Vec<PointId> = held.filter(|held| held.cloth == cloth).map(|held| held.point).collect();
+        if held.is_empty() {
+            let name = self.scene.graph.node(id).name();
+            let place = self.scene.source.place(&format!("{name}.sortLinks"));
+            let message = format!("`sortLinks` of `{name}` has no effect: no constraint holds a point of it");
+            self.findings.warning(&place, message);
+        }
+        Some(LinkOrder::Outwards(held))
     }
 
     /// Warns of pressure in a mesh that cannot hold it.

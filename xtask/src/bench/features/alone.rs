@@ -139,7 +139,7 @@ impl Sheet {
     fn solver(&self) -> anyhow::Result<Solver<f32>> {
         let mut builder = ModelBuilder::new();
         let cloth = builder.cloth(self.cloth.clone())?;
-        builder.set_link_order(cloth, self.order.clone());
+        builder.set_link_order(cloth, self.order.clone())?;
         Ok(Solver::new(builder, 1))
     }
 }
