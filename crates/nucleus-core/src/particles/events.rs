@@ -23,6 +23,13 @@ impl Draws {
         unit_random(self.key)
     }
 
+    /// Passes over the draws of so many new particles about an axis.
+    fn pass_over(&mut self, particles: u64, axis: &Vector3<f64>) {
+        // Two for the direction, if there is an axis, and one for the lifespan.
+        let each = if axis.try_normalize(0.0).is_some() { 3 } else { 1 };
+        self.key[1] = self.key[1].wrapping_add(particles.wrapping_mul(each));
+    }
+
     /// `most`, or a number from 1 to it.
     fn count(&mut self, most: u32, random: bool) -> u32 {
         if random && most > 0 { 1 + (self.next() * f64::from(most)) as u32 } else { most }
@@ -49,6 +56,7 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
     let mut states = std::mem::take(&mut solver.contact.row_states);
     contact_states_of_rows(&solver.model, &solver.state, &solver.contact, &mut states);
     let mut populations = std::mem::take(&mut solver.state.populations);
+    let mut room = Room::of(&populations, solver.model.cloths.len());
     for population in populations.iter_mut().filter(|population| !population.events().is_empty()) {
         let first = solver.model.cloths[population.cloth()].blocks.rows().start;
         for at in 0..population.len() {
@@ -57,18 +65,48 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
             let Some(collision) = population.notice(at, touches) else { continue };
             let place = Vector3::from(solver.state.position(row));
             let velocity = Vector3::from(solver.state.velocity[row as usize].xyz().map(R::to_f64));
-            happen(population, at, collision, [place, velocity]);
+            happen(population, at, collision, [place, velocity], &mut room);
         }
     }
     solver.state.populations = populations;
     solver.contact.row_states = states;
 }
 
+/// How many new particles each object can take up at the end of the substep, by the index of its cloth. None are made
+/// beyond that: an event may ask for billions.
+struct Room(Vec<usize>);
+
+impl Room {
+    /// The room that the events of the substep so far leave. All particles that live now may die before.
+    fn of(populations: &[Population], cloths: usize) -> Self {
+        let mut room = vec![0; cloths];
+        populations.iter().for_each(|population| room[population.cloth()] = population.capacity());
+        for spawn in populations.iter().flat_map(|population| &population.spawned) {
+            room[spawn.cloth] = room[spawn.cloth].saturating_sub(1);
+        }
+        Self(room)
+    }
+
+    /// How many of so many new particles an object can take up; none where it is no object of particles.
+    fn take(&mut self, cloth: usize, wanted: u64) -> u64 {
+        let Some(room) = self.0.get_mut(cloth) else { return 0 };
+        let taken = wanted.min(*room as u64);
+        *room -= taken as usize;
+        taken
+    }
+}
+
 /// Everything that happens at one collision of one particle.
-fn happen(population: &mut Population, at: usize, collision: u32, [place, velocity]: [Vector3<f64>; 2]) {
-    let cloth = population.cloth();
+fn happen(
+    population: &mut Population,
+    at: usize,
+    collision: u32,
+    [place, velocity]: [Vector3<f64>; 2],
+    room: &mut Room,
+) {
+    let own = population.cloth();
     let facts = population.facts(at, 0.0);
-    let mut dies = false;
+    let (mut dies, mut refused) = (false, 0);
     let mut spawned = std::mem::take(&mut population.spawned);
     for (k, event) in (0u64..).zip(population.events()) {
         let mut draws = Draws { key: [facts.id ^ (k + 1) << 48, u64::from(collision) << 32] };
@@ -76,20 +114,27 @@ fn happen(population: &mut Population, at: usize, collision: u32, [place, veloci
             continue;
         }
         dies |= event.die;
-        let emitted = draws.count(event.emit, event.random);
-        let parts = draws.count(event.split, event.random).saturating_sub(1);
-        for part in 0..emitted + parts {
-            let direction = draws.about(velocity, event.spread);
-            let lifespan = (event.lifespan[0] + event.lifespan[1] * (draws.next() - 0.5)).max(0.0);
-            let (cloth, age_of_whole, lifespan) = match part < emitted {
-                true => (event.target.index(), None, lifespan),
-                false => (cloth, Some(facts.age), facts.lifespan),
-            };
-            let velocity = direction * velocity.norm();
-            spawned.push(Spawn { cloth, position: place, velocity, age_of_whole, lifespan });
+        let emitted = u64::from(draws.count(event.emit, event.random));
+        let parts = u64::from(draws.count(event.split, event.random)).saturating_sub(1);
+        for (cloth, wanted, whole) in [(event.target.index(), emitted, None), (own, parts, Some(facts))] {
+            let made = room.take(cloth, wanted);
+            for _ in 0..made {
+                let direction = draws.about(velocity, event.spread);
+                let drawn = (event.lifespan[0] + event.lifespan[1] * (draws.next() - 0.5)).max(0.0);
+                spawned.push(Spawn {
+                    cloth,
+                    position: place,
+                    velocity: direction * velocity.norm(),
+                    age_of_whole: whole.map(|whole| whole.age),
+                    lifespan: whole.map_or(drawn, |whole| whole.lifespan),
+                });
+            }
+            draws.pass_over(wanted - made, &velocity);
+            refused += wanted - made;
         }
     }
     population.spawned = spawned;
+    population.spawns_refused += refused;
     if dies {
         population.kill(at);
     }

@@ -43,6 +43,7 @@ pub fn age_particles<R: Real>(
         populations.flat_map(|population| std::mem::take(&mut population.spawned)).collect();
     for index in 0..solver.state.populations.len() {
         let population = &mut solver.state.populations[index];
+        counters.births_refused += std::mem::take(&mut population.spawns_refused);
         let (cloth, before) = (population.cloth(), population.len());
         if let Some(kept) = population.remove_dead() {
             counters.deaths += (before - kept.len()) as u64;

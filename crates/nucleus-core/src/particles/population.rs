@@ -64,6 +64,8 @@ pub struct Population {
     collisions: Vec<u32>,
     /// What its collisions in this substep add.
     pub(super) spawned: Vec<Spawn>,
+    /// How many more they would have added if there were room.
+    pub(super) spawns_refused: u64,
     /// Factors by particle on the point field, the viscosity and the surface tension; empty without a ramp.
     field_factors: Vec<f32>,
     viscosity_factors: Vec<f32>,
@@ -96,7 +98,7 @@ checkpoint_struct!([] Population {
     values: [id, born, lifespan, mass, last_velocity, acceleration, touches, collisions, rotations, next_id, now],
     parts: [],
     rebuilt: [
-        spawned, cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, rotates, topology, field_factors, viscosity_factors,
+        spawned, spawns_refused, cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, rotates, topology, field_factors, viscosity_factors,
         tension_factors
     ],
 });
@@ -135,6 +137,7 @@ impl Population {
             touches: Vec::new(),
             collisions: Vec::new(),
             spawned: Vec::new(),
+            spawns_refused: 0,
             rotations: Vec::new(),
             rotates: particles.rotates,
             topology: 0,
@@ -168,6 +171,11 @@ impl Population {
     /// The number of living particles.
     pub fn len(&self) -> usize {
         self.id.len()
+    }
+
+    /// The largest number of particles.
+    pub fn capacity(&self) -> usize {
+        self.capacity
     }
 
     /// Whether there is room for no more.
