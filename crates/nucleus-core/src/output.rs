@@ -66,7 +66,15 @@ pub struct ParticleLook {
 }
 
 /// Read access to the state between substeps. Points are in the order of their mesh.
+///
+/// # Panics
+/// Objects and points are indices: a method panics when there is no such cloth, collider or point. Those about particles
+/// give none instead.
 pub trait StateView {
+    /// How many cloths and how many colliders there are; the default implementation does not know.
+    fn object_counts(&self) -> Option<[usize; 2]> {
+        None
+    }
     /// Replaces `out` by the positions of a cloth in world space, in units of which `units_per_metre` make a metre.
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>);
     /// Replaces `out` by the velocities of a cloth, in units per second.

@@ -79,8 +79,8 @@ pub trait CompiledReal: Real {
 }
 
 impl<R: CompiledReal> Solver<R> {
-    /// Builds lists, bounding volumes and state. `threads` is the number of cores to use; the result has the same bits
-    /// for any.
+    /// Builds lists, bounding volumes and state. `threads` is the number of cores to use, 1024 at most; the result has the
+    /// same bits for any.
     pub fn new(builder: ModelBuilder, threads: usize) -> Self {
         R::build(builder, threads)
     }
@@ -107,7 +107,8 @@ impl<R: CompiledReal> Solver<R> {
         R::step(self, frame, observer)
     }
 
-    /// The passes of a frame and their cost. A pass that the scene does not use is absent.
+    /// The passes of a frame and their cost. A pass that the scene does not use is absent. Invalid values of the input are
+    /// replaced as in [`step`](Self::step).
     pub fn passes(&self, frame: &FrameInput) -> Vec<PassCost> {
         R::passes(self, frame)
     }
@@ -199,6 +200,9 @@ impl<R: Real> Solver<R> {
     }
 
     /// The mass of a point in kilograms, when it is not pinned.
+    ///
+    /// # Panics
+    /// When there is no such cloth or point.
     pub fn mass(&self, cloth: ClothId, point: PointId) -> f64 {
         let row = self.model.cloths[cloth.index()].place(point.index());
         1.0 / self.state.inverse_mass[row as usize].to_f64()
@@ -235,6 +239,15 @@ impl<R: Real> LastPositions for Solver<R> {
         self.model.cloths[cloth.index()].points().len()
     }
 
+    fn room(&self, cloth: ClothId) -> usize {
+        let living = self.model.cloths[cloth.index()].points().len();
+        self.state.population_of(cloth.index()).map_or(living, Population::capacity)
+    }
+
+    fn particles(&self, cloth: ClothId) -> Option<usize> {
+        self.state.population_of(cloth.index()).map(Population::len)
+    }
+
     fn has_link(&self, link: &Link) -> bool {
         let Model { cloths, colliders } = &self.model;
         let sizes = ModelSizes {
@@ -246,6 +259,10 @@ impl<R: Real> LastPositions for Solver<R> {
 }
 
 impl<R: CompiledReal> StateView for Solver<R> {
+    fn object_counts(&self) -> Option<[usize; 2]> {
+        Some(self.objects())
+    }
+
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         self.column(cloth, out, |row| self.state.position(row).map(|x| x * units_per_metre));
     }

@@ -63,12 +63,14 @@ pub fn step<R: CompiledReal>(
     frame: &FrameInput,
     observer: &mut dyn StepObserver,
 ) -> StepReport {
+    let given = frame.births.len();
     let (frame, sanitized) = sanitize(frame, solver);
     let report = match sanitized.first {
         Some(InvalidInput::Duration) => skip_frame(solver, observer),
         _ => solve_frame(solver, &frame, observer),
     };
-    StepReport { sanitized, ..report }
+    let births_refused = report.births_refused + (given - frame.births.len()) as u64;
+    StepReport { sanitized, births_refused, ..report }
 }
 
 /// A frame without a valid duration changes nothing.

@@ -6,23 +6,38 @@
 //! | a point of a collider | its position before the frame |
 //! | a missing entry of a cloth or a collider | the default; a surplus one is dropped |
 //! | start or end of a pin's motion | the other of the two; if both are invalid, the point's current position |
-//! | a pin or an input mesh of something that does not exist | nothing: it is dropped |
+//! | a pin, an input mesh, a link, an exclusion or a target of a field that does not exist | nothing: it is dropped |
+//! | a second input mesh of a cloth, an exclusion beyond the limit | nothing: it is dropped |
+//! | a birth or a change of a particle | nothing: it is dropped |
 //! | gravity, wind, a force | zero |
+//! | substeps or evaluations beyond the limit | the limit |
 //! | any other attribute | its default |
 //! | duration of the frame | nothing: the frame is skipped |
+//!
+//! | You want to know… | Read |
+//! |---|---|
+//! | the range of an attribute | `attributes.rs` |
+//! | which constraints and exclusions are valid | `constraints.rs` |
+//! | which fields are valid | `fields.rs` |
+//! | which births and changes of particles are valid | `particles.rs` |
 
 mod attributes;
+mod constraints;
+mod fields;
+mod particles;
 
 use std::borrow::Cow;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
-pub use attributes::{MAX_COORDINATE, is_in_range};
-use attributes::{sanitize_cloth, sanitize_collider_settings, sanitize_numbers, sanitize_settings};
+pub use attributes::{MAX_COORDINATE, MAX_FACTOR, is_in_range};
+use attributes::{MIN_DURATION, is_duration, sanitize_cloth, sanitize_collider_settings, sanitize_settings};
+use constraints::{are_exclusions, is_valid_constraint, sanitize_constraint, sanitize_exclusions};
+use fields::{are_valid_fields, sanitize_fields};
+use particles::{are_births, is_change, sanitize_particles};
 
-use crate::input::fields::{Field, FieldKind, Noise};
 use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, InputMesh, Pin};
-use crate::input::links::{ConstraintFrame, Falloff, Link};
+use crate::input::links::Link;
 use crate::input::{ClothId, ColliderId, PointId};
 
 /// An invalid value in the input of a frame.
@@ -47,17 +62,27 @@ pub enum InvalidInput {
     /// A pin of a cloth or a point that does not exist.
     #[error("there is no point {} of cloth {} to pin", .1.0, .0.0)]
     NoSuchPin(ClothId, PointId),
-    /// Positions of the input mesh of a cloth: not one per point, or not finite. It attracts nothing in this frame.
-    #[error("the input mesh of cloth {} has not one finite position per point", .0.0)]
+    /// Positions of the input mesh of a cloth: not one per point, not finite, or given twice. It attracts nothing in this
+    /// frame; of two meshes the first does.
+    #[error("the input mesh of cloth {} has not one finite position per point, or there are two of them", .0.0)]
     InputMesh(ClothId),
+    /// A birth: a number that is not usable, a time outside of the frame, or an object without room for particles.
+    #[error("a birth in cloth {} has a number that is not usable, or the cloth has no room for particles", .0.0)]
+    Birth(ClothId),
+    /// A change of a particle: a number that is not usable, or a particle that is not alive.
+    #[error("a change of a particle of cloth {} has a number that is not usable, or there is no such particle", .0.0)]
+    ParticleChange(ClothId),
+    /// An exclusion with points that do not exist, or one beyond [`MAX_EXCLUSIONS`](crate::MAX_EXCLUSIONS); by its index.
+    #[error("exclusion {0} names points that do not exist, or is one too many")]
+    Exclusion(u32),
     /// An attribute of a cloth.
     #[error("an attribute of cloth {} is not a usable number", .0.0)]
     Cloth(ClothId),
     /// An attribute of a collider.
     #[error("an attribute of collider {} is not a usable number", .0.0)]
     Collider(ColliderId),
-    /// Gravity, wind, the ground plane or another setting of the solver.
-    #[error("gravity, wind, the ground plane or another setting is not a usable number")]
+    /// Gravity, wind, the ground plane, a field or another setting of the solver.
+    #[error("gravity, wind, the ground plane, a field or another setting is not a usable number")]
     Setting,
     /// A number of a constraint, or a link that refers to points that do not exist; by the index of the constraint.
     #[error("constraint {0} has a number that is not usable, or a link to points that do not exist")]
@@ -69,8 +94,8 @@ pub enum InvalidInput {
     /// A velocity or lifespan that an expression gave for a living particle.
     #[error("the expression at run time of the particles of cloth {} gave a value that is not a finite number", .0.0)]
     RuntimeExpression(ClothId),
-    /// The duration of the frame, which must be above zero.
-    #[error("the duration of the frame must be above zero")]
+    /// The duration of the frame, which must be above zero; in `f32` it must not vanish when it is divided into steps.
+    #[error("the duration of the frame must be above zero, at least {MIN_DURATION:e} s")]
     Duration,
 }
 
@@ -100,7 +125,11 @@ pub trait LastPositions {
     fn cloth_point(&self, cloth: ClothId, point: PointId) -> Vector3<f64>;
     /// How many points a cloth has.
     fn cloth_points(&self, cloth: ClothId) -> usize;
-    /// Whether all that a link refers to exists, and its numbers are finite.
+    /// How many points a cloth can have.
+    fn room(&self, cloth: ClothId) -> usize;
+    /// How many particles of an object are alive; `None` where none are born or die.
+    fn particles(&self, cloth: ClothId) -> Option<usize>;
+    /// Whether all that a link refers to exists, and its numbers are in range.
     fn has_link(&self, link: &Link) -> bool;
 }
 
@@ -126,7 +155,7 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
     for (id, collider) in (0..).map(ColliderId).zip(&mut frame.colliders) {
         sanitize_collider(id, collider, last.collider(id), &mut sanitized);
     }
-    if sanitize_fields(&mut frame.fields) {
+    if sanitize_fields(&mut frame.fields, last.objects()[0]) {
         sanitized.add(InvalidInput::Setting);
     }
     sanitize_pins(&mut frame, last, &mut sanitized);
@@ -135,10 +164,9 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
             sanitized.add(InvalidInput::Constraint(at));
         }
     }
-    let meshes = std::mem::take(&mut frame.input_meshes);
-    let (valid, invalid): (Vec<_>, Vec<_>) = meshes.into_iter().partition(|mesh| is_valid_mesh(mesh, last));
-    invalid.iter().for_each(|mesh| sanitized.add(InvalidInput::InputMesh(mesh.cloth)));
-    frame.input_meshes = valid;
+    sanitize_meshes(&mut frame.input_meshes, last, &mut sanitized);
+    sanitize_exclusions(&mut frame.exclusions, last, &mut sanitized);
+    sanitize_particles(&mut frame, last, &mut sanitized);
     (Cow::Owned(frame), sanitized)
 }
 
@@ -169,22 +197,37 @@ fn is_valid(frame: &FrameInput, last: &impl LastPositions) -> bool {
         && !frame.cloths.iter().any(|cloth| sanitize_cloth(&mut cloth.clone()))
         && (0..).map(ColliderId).zip(&frame.colliders).all(is_valid_collider)
         && frame.pins.iter().all(|pin| exists(pin, last) && is_in_range(&pin.start) && is_in_range(&pin.end))
-        && frame.input_meshes.iter().all(|mesh| is_valid_mesh(mesh, last))
+        && (0..frame.input_meshes.len()).all(|at| is_valid_mesh(&frame.input_meshes, at, last))
         && frame.constraints.iter().all(|constraint| is_valid_constraint(constraint, last))
-        && frame.fields.iter().all(is_valid_field)
+        && are_valid_fields(&frame.fields, last.objects()[0])
+        && are_exclusions(&frame.exclusions, last)
+        && are_births(&frame.births, last)
+        && frame.particle_changes.iter().all(|change| is_change(change, last))
 }
 
 fn exists(pin: &Pin, last: &impl LastPositions) -> bool {
     pin.cloth.index() < last.objects()[0] && pin.point.index() < last.cloth_points(pin.cloth)
 }
 
-fn is_valid_mesh(mesh: &InputMesh, last: &impl LastPositions) -> bool {
-    if mesh.cloth.index() >= last.objects()[0] {
+/// Whether an input mesh has one valid position per point, and is the first of its cloth.
+fn is_valid_mesh(meshes: &[InputMesh], at: usize, last: &impl LastPositions) -> bool {
+    let mesh = &meshes[at];
+    let is_second = meshes[..at].iter().any(|other| other.cloth == mesh.cloth);
+    if mesh.cloth.index() >= last.objects()[0] || is_second {
         return false;
     }
     let points = last.cloth_points(mesh.cloth);
     let is_valid = |column: &[Vector3<f64>]| column.len() == points && column.iter().all(is_in_range);
     is_valid(&mesh.start) && is_valid(&mesh.end)
+}
+
+fn sanitize_meshes(meshes: &mut Vec<InputMesh>, last: &impl LastPositions, sanitized: &mut Sanitized) {
+    // From the last one on, so that the first of two is still there.
+    for at in (0..meshes.len()).rev() {
+        if !is_valid_mesh(meshes, at, last) {
+            sanitized.add(InvalidInput::InputMesh(meshes.remove(at).cloth));
+        }
+    }
 }
 
 fn sanitize_collider(
@@ -210,52 +253,6 @@ fn sanitize_collider(
     }
 }
 
-/// Removes invalid fields; whether there were any.
-fn sanitize_fields(fields: &mut Vec<Field>) -> bool {
-    let before = fields.len();
-    fields.retain(is_valid_field);
-    fields.len() < before
-}
-
-/// Whether every number of a field is finite and in range.
-fn is_valid_field(field: &Field) -> bool {
-    let numbers = |numbers: &[f64]| numbers.iter().all(|x| x.abs() <= MAX_COORDINATE);
-    let noise =
-        |noise: &Noise| is_in_range(&noise.frequency) && is_in_range(&noise.phase) && numbers(&[noise.ratio]);
-    let kind = match &field.kind {
-        FieldKind::Gravity { acceleration: vector } | FieldKind::Uniform { force: vector } => {
-            is_in_range(vector)
-        }
-        FieldKind::Radial { force } => numbers(&[*force]),
-        FieldKind::Newton { magnitude, min_distance } => numbers(&[*magnitude, *min_distance]),
-        FieldKind::Drag { magnitude, along, velocity, half_speed } => {
-            numbers(&[*magnitude, *half_speed])
-                && is_in_range(velocity)
-                && along.as_ref().is_none_or(is_in_range)
-        }
-        FieldKind::Air { velocity, rate, .. } => is_in_range(velocity) && numbers(&[*rate]),
-        FieldKind::Turbulence { force, noise: waves } => numbers(&[*force]) && noise(waves),
-        FieldKind::Vortex { force, axis } => numbers(&[*force]) && is_in_range(axis),
-        FieldKind::VolumeAxis(axis) => {
-            numbers(&[axis.from_center, axis.from_axis, axis.along_axis, axis.around_axis, axis.turbulence])
-                && is_in_range(&axis.directional)
-                && is_in_range(&axis.axis)
-                && noise(&axis.noise)
-        }
-    };
-    let reach = &field.reach;
-    let is_volume = reach.volume.is_none_or(|volume| {
-        numbers(volume.to_local.as_slice()) && is_in_range(&volume.offset) && numbers(&[volume.section])
-    });
-    kind && is_volume
-        && is_in_range(&reach.center)
-        && numbers(&[reach.attenuation])
-        && numbers(&reach.falloff)
-        && reach.unit > 0.0
-        && reach.max_distance >= 0.0
-        && field.targets.iter().all(|(_, share)| numbers(&[*share]))
-}
-
 fn sanitize_pins(frame: &mut FrameInput, last: &impl LastPositions, sanitized: &mut Sanitized) {
     for pin in frame.pins.extract_if(.., |pin| !exists(pin, last)) {
         sanitized.add(InvalidInput::NoSuchPin(pin.cloth, pin.point));
@@ -273,10 +270,6 @@ fn sanitize_pins(frame: &mut FrameInput, last: &impl LastPositions, sanitized: &
             (false, false) => (now, now),
         };
     }
-}
-
-fn is_duration(duration: f64) -> bool {
-    duration > 0.0 && duration <= MAX_COORDINATE
 }
 
 /// A frame without its long columns.
@@ -297,53 +290,4 @@ fn settings_of(frame: &FrameInput) -> FrameInput {
 
 fn collider_settings(collider: &ColliderFrame) -> ColliderFrame {
     ColliderFrame { start: Vec::new(), end: Vec::new(), ..*collider }
-}
-
-fn is_valid_constraint(constraint: &ConstraintFrame, last: &impl LastPositions) -> bool {
-    let links = constraint.formed.iter().flatten().all(|link| last.has_link(link));
-    links && !sanitize_constraint(&mut ConstraintFrame { formed: None, ..constraint.clone() }, last)
-}
-
-/// Replaces invalid numbers of a constraint, and drops invalid links; whether there were any.
-fn sanitize_constraint(constraint: &mut ConstraintFrame, last: &impl LastPositions) -> bool {
-    let mut replaced = sanitize_numbers([
-        (&mut constraint.strength, 0.0),
-        (&mut constraint.tangent_strength, 0.0),
-        (&mut constraint.bend_strength, 0.0),
-        (&mut constraint.break_half_sine, 1.0),
-        (&mut constraint.friction, 0.0),
-        (&mut constraint.damp, 0.0),
-        (&mut constraint.motion_drag, 0.0),
-        (&mut constraint.glue_strength, 1.0),
-        (&mut constraint.glue_scale, 1.0),
-    ]);
-    let [least, most] = &mut constraint.iterations;
-    let [start, end] = &mut constraint.rest_scale;
-    replaced |= sanitize_numbers([(least, 0.0), (most, MAX_COORDINATE), (start, 1.0), (end, 1.0)]);
-    if constraint.keep_off.is_some_and(|distance| !distance.is_finite()) {
-        constraint.keep_off = None;
-        replaced = true;
-    }
-    let is_finite = |ramp: &Falloff| ramp.distance.is_finite() && ramp.samples.iter().all(|x| x.is_finite());
-    if constraint.force.is_some_and(|force| !force.acceleration.is_finite() || !is_finite(&force.falloff)) {
-        constraint.force = None;
-        replaced = true;
-    }
-    if constraint.dropoff.as_ref().is_some_and(|dropoff| !is_finite(dropoff)) {
-        constraint.dropoff = None;
-        replaced = true;
-    }
-    let is_space = |(linear, offset): &(Matrix3<f64>, Vector3<f64>)| {
-        linear.iter().all(|x| x.is_finite()) && is_in_range(offset)
-    };
-    if !constraint.space.iter().all(is_space) {
-        constraint.space = ConstraintFrame::default().space;
-        replaced = true;
-    }
-    if let Some(links) = &mut constraint.formed {
-        let before = links.len();
-        links.retain(|link| last.has_link(link));
-        replaced |= links.len() < before;
-    }
-    replaced
 }

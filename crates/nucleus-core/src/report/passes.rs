@@ -11,6 +11,7 @@ use crate::input::frame::{
     BendSolver, Bending, ClothFrame, ColliderFrame, ForceField, FrameInput, PushOut, ResistanceModel,
 };
 use crate::input::object_fields::PointField;
+use crate::input::validation::sanitize;
 use crate::integrate::aerodynamics::AirForces;
 use crate::integrate::gusts::is_gusty;
 use crate::integrate::local_wind::feels_wind;
@@ -24,6 +25,7 @@ use crate::solver::Solver;
 
 /// The cost of every pass of a frame; see [`Solver::passes`].
 pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> {
+    let frame = &*sanitize(frame, solver).0;
     let schedule = Schedule::<R>::new(frame);
     let steps = schedule.substeps * schedule.steps;
     let points: usize = solver.model.cloths.iter().map(|cloth| cloth.points().len()).sum();

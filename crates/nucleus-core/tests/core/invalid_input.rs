@@ -1,9 +1,12 @@
 //! An invalid value in the input of a frame is replaced and reported; the rest of the frame is solved as usual.
 
 use crate::scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
+use std::sync::Arc;
+
 use nucleus_core::{
-    ClothFrame, ClothId, ColliderFrame, ColliderId, FrameInput, InputMesh, InvalidInput, MAX_COORDINATE, Pin,
-    PointId, Solver, StateView,
+    ClothFrame, ClothId, ColliderFrame, ColliderId, ExcludedSide, Exclusion, Field, FieldKind, FrameInput,
+    InputMesh, InvalidInput, MAX_COORDINATE, MAX_EXCLUSIONS, ParticleChange, Pin, PointId, Reach,
+    ResistanceModel, Solver, StateView,
 };
 
 /// The points of the ball at this height in metres.
@@ -156,4 +159,67 @@ fn a_default_frame_collides() {
     }
     let middle = solver.point(ClothId(0), 40);
     assert!(middle.y > 0.3, "the sheet rests on the ball, not below it: {middle}");
+}
+
+#[test]
+fn a_second_input_mesh_of_a_cloth_is_dropped_and_reported() {
+    let (builder, _) = drape(9, 24.0);
+    let points = builder.positions(ClothId(0)).to_vec();
+    let mesh = InputMesh { cloth: ClothId(0), start: points.clone(), end: points };
+    let (_, count, first, _) = run(|input| input.input_meshes = vec![mesh.clone()]);
+    assert_eq!((count, first), (0, None));
+    let (_, count, first, _) = run(|input| input.input_meshes = vec![mesh.clone(); 3]);
+    assert_eq!((count, first), (2, Some(InvalidInput::InputMesh(ClothId(0)))));
+}
+
+#[test]
+fn exclusions_targets_and_changes_of_nothing_are_dropped_and_reported() {
+    let (expected, ..) = run(|_| {});
+    let points = |cloth, point| ExcludedSide::Points(vec![(ClothId(cloth), PointId(point))], Vec::new());
+    for side in [points(0, 81), points(1, 0), ExcludedSide::Points(vec![], vec![(ColliderId(1), PointId(0))])]
+    {
+        let exclusion = Arc::new(Exclusion { sides: [side, ExcludedSide::Everything] });
+        let (found, count, first, _) = run(|input| input.exclusions = vec![exclusion.clone()]);
+        assert_eq!((found, count, first), (expected, 1, Some(InvalidInput::Exclusion(0))));
+    }
+    let field = Field {
+        kind: FieldKind::Uniform { force: Vec3::x() },
+        reach: Reach::everywhere(),
+        targets: vec![(ClothId(4), 1.0)],
+    };
+    let (found, count, first, _) = run(|input| input.fields = vec![field.clone()]);
+    assert_eq!((found, count, first), (expected, 1, Some(InvalidInput::Setting)));
+    let change = ParticleChange { cloth: ClothId(0), place: 0, velocity: None, lifespan: Some(1.0) };
+    let (found, count, first, _) = run(|input| input.particle_changes = vec![change]);
+    assert_eq!((found, count, first), (expected, 1, Some(InvalidInput::ParticleChange(ClothId(0)))));
+}
+
+#[test]
+fn exclusions_beyond_the_limit_are_dropped_and_reported() {
+    let corner = ExcludedSide::Points(vec![(ClothId(0), PointId(0))], Vec::new());
+    let exclusion = Arc::new(Exclusion { sides: [corner.clone(), corner] });
+    let (_, count, ..) = run(|input| input.exclusions = vec![exclusion.clone(); MAX_EXCLUSIONS]);
+    assert_eq!(count, 0);
+    let (_, count, first, _) = run(|input| input.exclusions = vec![exclusion.clone(); MAX_EXCLUSIONS + 2]);
+    assert_eq!((count, first), (2, Some(InvalidInput::Exclusion(MAX_EXCLUSIONS as u32))));
+}
+
+#[test]
+fn a_frame_of_more_steps_than_ever_end_is_refused() {
+    let (builder, usual) = drape(9, 24.0);
+    let solver: Solver = Solver::new(builder, 1);
+    let divided = FrameInput { substeps: u32::MAX, ..usual.clone() };
+    assert_eq!(solver.check_frame(&divided), Err(InvalidInput::Setting));
+    let evaluated = FrameInput { resistance: ResistanceModel::Physical { evaluations: 1e12 }, ..usual };
+    assert_eq!(solver.check_frame(&evaluated), Err(InvalidInput::Setting));
+}
+
+#[test]
+fn the_passes_of_an_invalid_frame_are_those_of_its_replacement() {
+    let (builder, usual) = drape(9, 24.0);
+    let solver: Solver = Solver::new(builder, 1);
+    let mut surplus = usual.clone();
+    surplus.cloths.resize(9, ClothFrame::default());
+    surplus.colliders.resize(9, ColliderFrame::default());
+    assert_eq!(solver.passes(&surplus), solver.passes(&usual));
 }

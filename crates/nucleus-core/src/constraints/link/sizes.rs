@@ -1,6 +1,12 @@
 //! Whether links refer to points that exist.
 
 use crate::input::links::{Link, LinkSide};
+use crate::input::validation::{MAX_FACTOR, is_in_range};
+
+/// Largest weight of a point; those of a fold are large where its faces are small.
+const MAX_WEIGHT: f64 = 1e9;
+/// Largest length of a link in metres: what moves a point so far in one step is finite in `f32`.
+const MAX_LENGTH: f64 = 1e9;
 
 /// The number of points of each cloth and collider, where there is one.
 pub struct ModelSizes<'a> {
@@ -11,25 +17,27 @@ pub struct ModelSizes<'a> {
 }
 
 impl ModelSizes<'_> {
-    /// Whether a link refers to points that exist, and its numbers are finite.
+    /// Whether a link refers to points that exist, and its numbers are in range.
     pub fn has(&self, link: &Link) -> bool {
         let is_side = |side: &LinkSide| match side {
             LinkSide::Cloth { cloth, points, weights } => {
                 let count = (self.cloths)(cloth.index());
                 count.is_some_and(|count| points.iter().all(|point| point.index() < count))
-                    && weights.iter().all(|weight| weight.is_finite())
+                    && weights.iter().all(|weight| weight.abs() <= MAX_WEIGHT)
             }
             LinkSide::Collider { collider, points, weights } => {
                 let count = (self.colliders)(collider.index());
                 count.is_some_and(|count| points.iter().all(|point| point.index() < count))
-                    && weights.iter().all(|weight| weight.is_finite())
+                    && weights.iter().all(|weight| weight.abs() <= MAX_WEIGHT)
             }
-            LinkSide::Space(place) => crate::input::validation::is_in_range(place),
+            LinkSide::Space(place) => is_in_range(place),
         };
-        let numbers = [link.rest, link.strength, link.tangent_strength, link.glue, link.length];
+        let factors = [link.strength, link.tangent_strength, link.glue, link.weight[0], link.weight[1]];
+        let lengths = [link.length, link.fold.map_or(0.0, |fold| fold.max_length)];
         link.sides.iter().all(is_side)
-            && link.fold.is_none_or(|fold| fold.max_length.is_finite())
-            && numbers.iter().chain(&link.weight).all(|number| number.is_finite())
+            && link.rest.abs() <= MAX_LENGTH
+            && lengths.iter().all(|length| (0.0..=MAX_LENGTH).contains(length))
+            && factors.iter().all(|factor| (0.0..=MAX_FACTOR).contains(factor))
             && !(link.on_surface && matches!(link.sides[1], LinkSide::Space(_)))
     }
 }

@@ -3,13 +3,31 @@
 use nalgebra::Vector3;
 
 use crate::input::frame::{
-    ClothFrame, ColliderFrame, ForceField, FrameInput, Liquid, Pressure, ResistanceModel,
+    ClothFrame, ColliderFrame, ForceField, FrameInput, Liquid, Pressure, ResistanceModel, Stiffness,
 };
 use crate::input::object_fields::{PointField, WindField};
 
 /// Largest distance from the origin in metres, and largest force, speed or acceleration in SI units: its square and the
 /// volumes it spans are finite in `f32`.
 pub const MAX_COORDINATE: f64 = 1e12;
+
+/// Largest factor on a force, a strength or a length, and largest entry of a linear map.
+pub const MAX_FACTOR: f64 = 1e6;
+
+/// Least duration of a frame in seconds: velocities over the shortest step are finite in `f32`.
+pub(super) const MIN_DURATION: f64 = 1e-12;
+
+/// Limits of what a frame is divided into; more would never return. They are those of `subSteps` and `evaluations`.
+const MAX_SUBSTEPS: u32 = 100_000;
+const MAX_EVALUATIONS: f64 = 1e6;
+
+/// Least distance of the particles of a liquid in metres.
+const MIN_SPACING: f64 = 1e-6;
+
+/// Whether a frame can last so long, in seconds.
+pub(super) fn is_duration(duration: f64) -> bool {
+    (MIN_DURATION..=MAX_COORDINATE).contains(&duration)
+}
 
 /// Whether no component is NaN or beyond [`MAX_COORDINATE`].
 pub fn is_in_range(v: &Vector3<f64>) -> bool {
@@ -18,14 +36,20 @@ pub fn is_in_range(v: &Vector3<f64>) -> bool {
 
 /// Replaces invalid settings of the solver; whether there were any.
 pub(super) fn sanitize_settings(frame: &mut FrameInput) -> bool {
+    let default = FrameInput::default();
     let mut replaced = sanitize_vectors([&mut frame.gravity, &mut frame.wind]);
     replaced |= sanitize_numbers([
         (&mut frame.air_density, 0.0),
         (&mut frame.collision_iterations, 1.0),
         (&mut frame.wind_noise, 0.0),
+        (&mut frame.layer_range, default.layer_range),
+        (&mut frame.self_collision_iterations, default.self_collision_iterations),
     ]);
+    replaced |= frame.substeps > MAX_SUBSTEPS;
+    frame.substeps = frame.substeps.min(MAX_SUBSTEPS);
     if let ResistanceModel::Physical { evaluations } = &mut frame.resistance {
-        replaced |= sanitize_numbers([(evaluations, 1.0)]);
+        replaced |= sanitize_numbers([(evaluations, 1.0)]) || *evaluations > MAX_EVALUATIONS;
+        *evaluations = evaluations.min(MAX_EVALUATIONS);
     }
     if let Some(plane) = &mut frame.plane {
         replaced |= sanitize_numbers([
@@ -76,6 +100,7 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.input_attract.strength, 0.0),
         (&mut cloth.input_attract.damp, 0.0),
         (&mut cloth.input_attract.motion_drag, 0.0),
+        (&mut cloth.self_collision.thickness, default.self_collision.thickness),
     ]);
     let tethers = cloth.tethers.as_mut().is_some_and(|scale| sanitize_numbers([(scale, 1.0)]));
     let fields = tethers
@@ -83,11 +108,29 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         | cloth.point_field.as_mut().is_some_and(sanitize_point_field)
         | sanitize_wind_field(&mut cloth.wind_field)
         | sanitize_liquid(&mut cloth.liquid);
+    let yields = sanitize_yields(cloth);
+    vectors
+        | numbers
+        | yields
+        | fields
+        | sanitize_stiffness(&mut cloth.stiffness)
+        | sanitize_pressure(&mut cloth.pressure)
+}
+
+/// Without a valid limit nothing yields. One below zero would yield at rest; a link cannot be shorter than nothing.
+fn sanitize_yields(cloth: &mut ClothFrame) -> bool {
     let bending = &mut cloth.bending;
-    let limits =
-        [&mut cloth.yield_strain, &mut bending.yield_sine, &mut bending.yield_half_angle].into_iter();
-    let yields = limits.filter(|limit| limit.is_nan()).map(|limit| *limit = f64::INFINITY).count() > 0;
-    vectors | numbers | yields | fields | sanitize_pressure(&mut cloth.pressure)
+    let limits = [&mut cloth.yield_strain, &mut bending.yield_sine, &mut bending.yield_half_angle];
+    let invalid = limits.into_iter().filter(|limit| limit.is_nan() || **limit < 0.0);
+    invalid.map(|limit| *limit = f64::INFINITY).count() > 0
+}
+
+/// Without a valid stiffness the resistance counts.
+fn sanitize_stiffness(given: &mut Stiffness) -> bool {
+    let Stiffness { stretch, compression, shear, bend, warp, weft } = given;
+    let is_valid = |stiffness: &mut f64| stiffness.abs() <= MAX_COORDINATE;
+    let all = [stretch, compression, shear, bend, warp, weft].into_iter();
+    all.filter_map(|stiffness| stiffness.take_if(|given| !is_valid(given))).count() > 0
 }
 
 /// A liquid without a spacing is none.
@@ -98,7 +141,7 @@ fn sanitize_liquid(liquid: &mut Option<Liquid>) -> bool {
         (&mut settings.viscosity, 0.0),
         (&mut settings.surface_tension, 0.0),
     ]);
-    let is_valid = settings.spacing > 0.0 && settings.spacing <= MAX_COORDINATE;
+    let is_valid = (MIN_SPACING..=MAX_COORDINATE).contains(&settings.spacing);
     if !is_valid {
         *liquid = None;
     }
@@ -116,16 +159,20 @@ fn sanitize_pressure(pressure: &mut Pressure) -> bool {
 }
 
 fn sanitize_field(field: &mut ForceField) -> bool {
-    let samples = field.falloff.iter_mut().filter(|sample| !sample.is_finite());
-    let replaced = samples.map(|sample| *sample = 0.0).count() > 0;
-    replaced | sanitize_numbers([(&mut field.magnitude, 0.0), (&mut field.distance, 0.0)])
+    sanitize_samples(&mut field.falloff)
+        | sanitize_numbers([(&mut field.magnitude, 0.0), (&mut field.distance, 0.0)])
 }
 
 fn sanitize_point_field(field: &mut PointField) -> bool {
-    let samples = field.falloff.iter_mut().filter(|sample| !sample.is_finite());
-    let replaced = samples.map(|sample| *sample = 0.0).count() > 0;
-    let PointField { magnitude, self_attract, radius, distance, .. } = field;
-    replaced | sanitize_numbers([(magnitude, 0.0), (self_attract, 0.0), (radius, 0.0), (distance, 0.0)])
+    let PointField { magnitude, self_attract, radius, distance, falloff } = field;
+    sanitize_samples(falloff)
+        | sanitize_numbers([(magnitude, 0.0), (self_attract, 0.0), (radius, 0.0), (distance, 0.0)])
+}
+
+/// Where a falloff has no valid factor the field does not act.
+fn sanitize_samples(samples: &mut [f64]) -> bool {
+    let invalid = samples.iter_mut().filter(|sample| sample.is_nan() || sample.abs() > MAX_FACTOR);
+    invalid.map(|sample| *sample = 0.0).count() > 0
 }
 
 fn sanitize_wind_field(field: &mut WindField) -> bool {
