@@ -34,7 +34,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver11";
+const KIND: [u8; 8] = *b"solver12";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -263,8 +263,8 @@ fn rebuild<R: Real>(solver: &mut Solver<R>) {
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
 }
 
-/// A hash of all points, faces and masses, in the solver's order. Attributes may change from frame to frame and are no
-/// part of it.
+/// A hash of all points, faces, masses, lists and the shapes at rest, in the solver's order. Attributes may change from
+/// frame to frame and are no part of it.
 fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
     let of_cloth = |cloth: &ClothModel<R>| {
         let order = cloth.order.places().iter().map(|&place| u64::from(place));
@@ -273,12 +273,22 @@ fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
         let flags =
             [u64::from(cloth.damps), u64::from(cloth.alternates_direction), cloth.triangles.len() as u64];
         let boundary = corners(&cloth.boundary.triangles);
+        // A checkpoint stores these as far as a cloth has them.
+        let stored = [
+            usize::from(cloth.plastic),
+            cloth.bend_angles.len(),
+            cloth.bend_six_angles.len(),
+            cloth.pressure.chambers(),
+            cloth.shape.shells(),
+        ];
         [cloth.blocks.max_len() as u64]
             .into_iter()
             .chain(order)
             .chain(lists)
             .chain(flags)
             .chain(boundary)
+            .chain(stored.map(|count| count as u64))
+            .chain([cloth.rest_shape])
             .fold(HASH_SEED, hash_word)
     };
     let cloths = solver.model.cloths.iter().map(of_cloth);

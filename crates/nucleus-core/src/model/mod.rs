@@ -35,6 +35,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use crate::bytes::hash_word;
 use crate::constraints::angle::AngleGroup;
 use crate::constraints::hinge::{self, HingeGroup, HingeRow, RestGroup};
 use crate::constraints::pressure::PressureModel;
@@ -102,6 +103,8 @@ pub struct ClothModel<R> {
     pub edge_length: f64,
     /// Whether damping is ever non-zero.
     pub damps: bool,
+    /// A hash of its positions at rest; zero for particles, which have no such shape.
+    pub rest_shape: u64,
     /// Vertex maps per row; empty where there are none.
     pub strength_maps: StrengthMaps<R>,
     /// Vertex maps of the aerodynamic forces, by row; empty where there are none.
@@ -151,6 +154,7 @@ impl<R: Real> ClothModel<R> {
             mass_map: Vec::new(),
             edge_length: 0.0,
             damps: cloth.lists.damp,
+            rest_shape: rest_shape(cloth),
             strength_maps: StrengthMaps::default(),
             air: Vec::new(),
             field_map: Vec::new(),
@@ -300,6 +304,12 @@ impl<R: Real> ClothModel<R> {
     pub fn place(&self, point: usize) -> u32 {
         self.points().start + self.order.place(point)
     }
+}
+
+/// A hash of the positions of a cloth at rest; zero for particles.
+fn rest_shape(cloth: &Cloth) -> u64 {
+    let positions = cloth.surface.positions.iter().filter(|_| cloth.particles.is_none());
+    positions.flat_map(|p| [p.x, p.y, p.z]).map(f64::to_bits).fold(0, hash_word)
 }
 
 /// The objects of a scene, by their ids.

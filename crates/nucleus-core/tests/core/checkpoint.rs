@@ -4,7 +4,8 @@ use std::sync::OnceLock;
 
 use crate::scenes::{Vec3, frame, grid, ground, physical, sphere, still};
 use nucleus_core::{
-    Collider, FrameInput, ModelBuilder, RestoreError, SelfCollision, Solver, add_checksum, verify_checksum,
+    Cloth, ClothId, ClothLists, Collider, ConstraintFrame, FrameInput, Link, LinkSide, Mass, ModelBuilder,
+    PointId, RestoreError, SelfCollision, Solver, Surface, add_checksum, verify_checksum,
 };
 use proptest::prelude::*;
 
@@ -12,7 +13,7 @@ use proptest::prelude::*;
 fn scene() -> (ModelBuilder, FrameInput) {
     let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
     sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.5, 0.21, -0.5));
-    let mut builder = crate::scenes::one_cloth(sheet, nucleus_core::ClothLists::ALL);
+    let mut builder = crate::scenes::one_cloth(sheet, ClothLists::ALL);
     builder.collider(Collider { surface: sphere(0.2, Vec3::zeros()) }).expect("a good mesh");
     let own = SelfCollision { on: true, thickness: 0.02, ..SelfCollision::OFF };
     let cloth = nucleus_core::ClothFrame { thickness: 0.02, self_collision: own, ..still() };
@@ -67,4 +68,58 @@ fn a_checkpoint_of_another_version_is_refused_with_that_reason() {
     let newer = add_checksum(*b"solver99", inner);
     let restored = Solver::<f32>::restored(scene().0, 1, &newer).map(|_| ());
     assert_eq!(restored, Err(RestoreError::OtherVersion));
+}
+
+/// A sheet of this size in metres with these lists.
+fn sheet(size: f64, lists: ClothLists) -> ModelBuilder {
+    let sheet = Surface::sheet(Vec3::y() * 0.4, [Vec3::x() * size, Vec3::z() * size], [8, 8]);
+    let mut builder = ModelBuilder::new();
+    builder.cloth(Cloth::new(sheet, Mass::PerPoint(0.01), lists)).expect("a good mesh");
+    builder
+}
+
+#[test]
+fn a_checkpoint_of_another_shape_or_of_other_lists_is_of_another_model() {
+    let saved = Solver::<f32>::new(sheet(1.0, ClothLists::ALL), 1).save();
+    let restored = |builder| Solver::<f32>::restored(builder, 1, &saved).map(|_| ());
+    assert_eq!(restored(sheet(1.0, ClothLists::ALL)), Ok(()));
+    assert_eq!(restored(sheet(3.0, ClothLists::ALL)), Err(RestoreError::OtherModel));
+    for lists in [
+        ClothLists { plastic: true, ..ClothLists::ALL },
+        ClothLists { bend_angles: true, ..ClothLists::ALL },
+        ClothLists { pressure: true, ..ClothLists::ALL },
+        ClothLists { shape: true, ..ClothLists::ALL },
+    ] {
+        assert_eq!(restored(sheet(1.0, lists)), Err(RestoreError::OtherModel), "{lists:?}");
+    }
+}
+
+#[test]
+fn links_that_stop_sliding_continue_with_the_same_bits() {
+    // The place is beside the edge of the sheet.
+    let face = LinkSide::Cloth {
+        cloth: ClothId(0),
+        points: [PointId(43), PointId(44), PointId(53)],
+        weights: [0.3, 0.3, 0.4],
+    };
+    let place = LinkSide::Space(Vec3::new(1.4, 0.4, 0.6));
+    let link = Link { on_surface: true, ..Link::new([place, face], 0.05) };
+    let mut solver = Solver::<f32>::new(sheet(1.0, ClothLists::ALL), 1);
+    let input = |solver: &Solver<f32>, formed: Option<Vec<Link>>, slides: bool| {
+        let constraint = ConstraintFrame { formed, slides, friction: 0.5, ..ConstraintFrame::default() };
+        FrameInput { constraints: vec![constraint], ..solver.default_frame() }
+    };
+    for number in 0..3 {
+        let input = input(&solver, (number == 0).then(|| vec![link]), true);
+        solver.step(&input, &mut ());
+    }
+    let saved = solver.save();
+    let mut restored =
+        Solver::<f32>::restored(sheet(1.0, ClothLists::ALL), 1, &saved).expect("the same model");
+    for slides in [false, true] {
+        let input = input(&solver, None, slides);
+        solver.step(&input, &mut ());
+        restored.step(&input, &mut ());
+        assert_eq!(solver.state_hash(), restored.state_hash(), "slides: {slides}");
+    }
 }

@@ -152,6 +152,11 @@ impl<R: Real> Placed<'_, R> {
 }
 
 impl<R: Real> Placed<'_, R> {
+    /// The direction of a link that leaves its surface sideways, while it slides.
+    fn beside(&self, row: &SurfaceRow) -> Option<Point> {
+        row.beside.filter(|_| self.prescribed.frame.slides)
+    }
+
     /// The unit vector along which a link with the distance vector `d` keeps its rest length: the normal, or of a sliding
     /// link beside its face the line from its foot on an edge, where it has no side. An edge of cloth takes up no torque:
     /// there the line is `d`, and friction does not act.
@@ -159,7 +164,7 @@ impl<R: Real> Placed<'_, R> {
         let (corners, weights) = self.corners(&link.sides[1]);
         // At a distance, a place above a face is not along the normal between corners.
         let normal = self.normal(corners, weights, frame.slides && link.rest == 0.0);
-        match (row.beside.filter(|_| link.rest != 0.0), self.id) {
+        match (self.beside(row).filter(|_| link.rest != 0.0), self.id) {
             (None, _) => normal,
             (Some(line), SurfaceId::Collider(_)) => line * link.rest.signum(),
             (Some(_), SurfaceId::Cloth(_)) => d.try_normalize(0.0).unwrap_or(normal) * link.rest.signum(),
@@ -175,7 +180,7 @@ impl<R: Real> Placed<'_, R> {
         [d, normal, unit]: [Point; 3],
     ) -> Gradient {
         let mut gradient = Gradient::along(&row.ends, unit);
-        let tilts = matches!(self.id, SurfaceId::Cloth(_)) && row.beside.is_none();
+        let tilts = matches!(self.id, SurfaceId::Cloth(_)) && self.beside(row).is_none();
         if tilts {
             let (corners, _) = self.corners(&link.sides[1]);
             let gradients = barycentric_gradients(corners.map(|corner| self.position(corner)));
