@@ -101,6 +101,13 @@ pub use texture_coordinates::{MeshCoordinates, texture_coordinates};
 /// All errors of the scene: missing or invalid meshes, points that do not exist, values outside their range.
 pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
     let mut findings = Findings::new(scene.source.file().to_owned());
+    for fault in scene.time_faults() {
+        findings.error(&(0..0), fault);
+    }
+    // Without valid times nothing has a start.
+    if findings.errors() > 0 {
+        return Err(findings.in_order());
+    }
     let mut geometry = Geometry::new(scene);
     let compiled = compile_nuclei(scene, &BTreeSet::new(), &mut geometry, &mut findings);
     if compiled.is_empty() {

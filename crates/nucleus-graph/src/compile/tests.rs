@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::attributes::{NodeType, Value, n_base, n_cloth, n_rigid, nucleus, particle};
 use crate::graph::Setting;
-use crate::scene::read_scene_text;
+use crate::scene::{Record, read_scene_text};
 
 mod attachments;
 mod budget;
@@ -373,6 +373,26 @@ fn a_run_begins_at_the_start_frame_with_the_positions_of_that_frame() {
     assert_eq!(program(&format!(r#""n": nucleus(), {moving}"#)).time().start, 1);
     let never = refused(&format!(r#""n": nucleus(startFrame: 25), {moving}"#));
     assert_eq!(never, "`startFrame` of `n` comes after the last frame, 24");
+}
+
+#[test]
+fn frames_that_cannot_be_evaluated_are_refused() {
+    let usual = scene("");
+    assert!(usual.time_faults().is_empty());
+    let refused = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = usual.clone();
+        change(&mut scene);
+        compile(&scene).expect_err("no run").len()
+    };
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300, 1e300] {
+        assert_eq!(refused(&|scene| scene.time.fps = bad), 1, "fps: {bad}");
+        assert_eq!(refused(&|scene| scene.every = bad), 1, "every: {bad}");
+    }
+    assert_eq!(refused(&|scene| scene.every = 0.3), 1);
+    assert_eq!(refused(&|scene| scene.time.end = scene.time.start - 1), 1);
+    assert_eq!(refused(&|scene| scene.time.end = i64::MAX), 1);
+    assert_eq!(refused(&|scene| scene.time.start = i64::MIN), 1);
+    assert_eq!(refused(&|scene| scene.record = Record::Every(0)), 1);
 }
 
 #[test]

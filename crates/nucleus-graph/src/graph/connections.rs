@@ -115,7 +115,7 @@ impl Graph {
     /// Refuses an index on an attribute that is not multi, a multi attribute without one, and components of
     /// anything but a vector.
     fn check_plug(&self, plug: Plug) -> Result<(), GraphError> {
-        let node = self.node(plug.node);
+        let node = self.check_node(plug.node)?;
         if node.node_type().attribute(plug.attribute.name) != Some(plug.attribute) {
             let (node, node_type) = (node.name().to_owned(), node.node_type().name);
             return Err(GraphError::NoAttribute { node, node_type, attribute: plug.attribute.name });

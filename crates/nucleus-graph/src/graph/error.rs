@@ -34,8 +34,8 @@ pub enum GraphError {
         /// The text.
         name: String,
     },
-    /// The clock cannot be renamed.
-    #[error("`time1` is the clock of every scene and keeps its name")]
+    /// The clock cannot be renamed, and has no parent.
+    #[error("`time1` is the clock of every scene: it keeps its name and has no parent")]
     Clock,
     /// An input takes one connection.
     #[error("`{input}` is connected already, from `{source_plug}`")]
@@ -94,6 +94,27 @@ pub enum GraphError {
         from: String,
         /// The input.
         to: String,
+    },
+    /// The node belongs to another graph, or has been deleted.
+    #[error("there is no such node: it has been deleted, or belongs to another graph")]
+    NoNode,
+    /// Only a node with a transform can be a parent.
+    #[error("`{parent}` is a {node_type} and cannot be the parent of `{node}`: it has no transform")]
+    NoTransform {
+        /// The node.
+        node: String,
+        /// The refused parent.
+        parent: String,
+        /// Its type.
+        node_type: &'static str,
+    },
+    /// Only a mesh is blended, and only into a mesh.
+    #[error("`{node}` is a {node_type} and cannot be blended: it is no mesh")]
+    NoMesh {
+        /// The node.
+        node: String,
+        /// Its type.
+        node_type: &'static str,
     },
     /// The chain of blend targets would lead back to the mesh.
     #[error("`{mesh}` cannot be blended into `{target}`, which is blended into it")]

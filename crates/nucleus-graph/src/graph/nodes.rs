@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::attributes::{Attribute, NodeType, dynamic_constraint, n_base, time};
+use crate::attributes::{Attribute, NodeType, dynamic_constraint, n_base, surface_shape, time, transform};
 
 use super::error::GraphError;
 use super::node::{Connection, Node, NodeId};
@@ -55,8 +55,9 @@ impl Graph {
     /// Renames a node. A node that a creation command made becomes independent of it.
     ///
     /// # Errors
-    /// When the name is taken by another node or not a valid name, or when the node is the clock.
+    /// When the name is taken by another node or not a valid name, when the node is the clock, or has been deleted.
     pub fn rename(&mut self, node: NodeId, name: &str) -> Result<(), GraphError> {
+        self.check_node(node)?;
         if self.find(name) == Some(node) {
             return Ok(());
         }
@@ -74,7 +75,7 @@ impl Graph {
     /// Sets an attribute. A node that a creation command made becomes independent of it.
     ///
     /// # Errors
-    /// When the node's type has no such attribute, or the setting does not fit it.
+    /// When the node's type has no such attribute, the setting does not fit it, or the node has been deleted.
     pub fn set(
         &mut self,
         node: NodeId,
@@ -105,7 +106,7 @@ impl Graph {
         attribute: &'static Attribute,
         setting: &Setting,
     ) -> Result<(), GraphError> {
-        let Node { name, node_type, .. } = self.node(node);
+        let Node { name, node_type, .. } = self.check_node(node)?;
         if node_type.attribute(attribute.name) != Some(attribute) {
             let (node, node_type) = (name.clone(), node_type.name);
             return Err(GraphError::NoAttribute { node, node_type, attribute: attribute.name });
@@ -119,12 +120,13 @@ impl Graph {
     /// Replaces the preset of a node. The node's own settings keep precedence.
     ///
     /// # Errors
-    /// When the node's type lacks an attribute of the preset, or a setting does not fit.
+    /// When the node's type lacks an attribute of the preset, a setting does not fit, or the node has been deleted.
     pub fn apply_preset(
         &mut self,
         node: NodeId,
         preset: &[(&'static Attribute, Setting)],
     ) -> Result<(), GraphError> {
+        self.check_node(node)?;
         preset.iter().try_for_each(|(row, setting)| self.check_setting(node, row, setting))?;
         self.make_independent_if_created(node);
         let taken = &mut self.node_mut(node).preset;
@@ -134,6 +136,9 @@ impl Graph {
     }
 
     /// Removes the setting of an attribute; returns whether there was one.
+    ///
+    /// # Panics
+    /// When the node has been deleted.
     pub fn unset(&mut self, node: NodeId, attribute: &Attribute) -> bool {
         self.make_independent_if_created(node);
         self.node_mut(node).settings.remove(attribute.name).is_some()
@@ -142,8 +147,10 @@ impl Graph {
     /// Makes a transform the parent of a node.
     ///
     /// # Errors
-    /// When the node is an ancestor of the transform, or the transform itself.
+    /// When the parent has no transform, when the node is an ancestor of it or the transform itself, when the node is the
+    /// clock, or when one of them has been deleted.
     pub fn set_parent(&mut self, node: NodeId, parent: NodeId) -> Result<(), GraphError> {
+        self.check_parent(node, parent)?;
         if self.self_and_ancestors(parent).any(|ancestor| ancestor == node) {
             let [node, parent] = [node, parent].map(|id| self.node(id).name.clone());
             return Err(GraphError::ParentCycle { node, parent });
@@ -153,7 +160,23 @@ impl Graph {
         Ok(())
     }
 
+    /// Refuses a parent without a transform, and any parent of the clock.
+    fn check_parent(&self, node: NodeId, parent: NodeId) -> Result<(), GraphError> {
+        let [child, above] = [self.check_node(node)?, self.check_node(parent)?];
+        if node == self.clock() {
+            return Err(GraphError::Clock);
+        }
+        if !above.node_type.is_a(&transform::TRANSFORM) {
+            let [node, parent] = [child, above].map(|node| node.name.clone());
+            return Err(GraphError::NoTransform { node, parent, node_type: above.node_type.name });
+        }
+        Ok(())
+    }
+
     /// Removes the parent of a node.
+    ///
+    /// # Panics
+    /// When the node has been deleted.
     pub fn unparent(&mut self, node: NodeId) {
         self.make_independent_if_created(node);
         self.node_mut(node).parent = None;
@@ -162,8 +185,14 @@ impl Graph {
     /// Sets the blend target of a mesh.
     ///
     /// # Errors
-    /// When the chain of blend targets leads from the target back to the mesh.
+    /// When one of them is no mesh or has been deleted, or the chain of blend targets leads from the target back to the mesh.
     pub fn blend_into(&mut self, mesh: NodeId, target: NodeId) -> Result<(), GraphError> {
+        for id in [mesh, target] {
+            let Node { name, node_type, .. } = self.check_node(id)?;
+            if !node_type.is_a(&surface_shape::SURFACE_SHAPE) {
+                return Err(GraphError::NoMesh { node: name.clone(), node_type: node_type.name });
+            }
+        }
         let mut all = std::iter::successors(Some(target), |&mesh| self.node(mesh).blend_target);
         if all.any(|other| other == mesh) {
             let [mesh, target] = [mesh, target].map(|id| self.node(id).name.clone());
@@ -175,16 +204,19 @@ impl Graph {
     }
 
     /// The blend target of a mesh.
+    ///
+    /// # Panics
+    /// When the node has been deleted.
     pub fn blend_target(&self, mesh: NodeId) -> Option<NodeId> {
         self.node(mesh).blend_target
     }
 
     /// Deletes a node with its connections, its children, and the nodes that its creation command made. Does
-    /// nothing for the clock.
+    /// nothing for the clock, and for a node that this graph does not have.
     pub fn remove(&mut self, node: NodeId) {
         let mut gone = if node == self.clock() { Vec::new() } else { vec![node] };
         while let Some(node) = gone.pop() {
-            if self.nodes[node.index()].is_none() {
+            if self.get(node).is_none() {
                 continue;
             }
             let depends =
@@ -299,6 +331,11 @@ impl Graph {
             arriving.retain(|other| *other != connection);
         }
         there
+    }
+
+    /// A node, unless this graph does not have it.
+    pub(super) fn check_node(&self, id: NodeId) -> Result<&Node, GraphError> {
+        self.get(id).ok_or(GraphError::NoNode)
     }
 
     pub(super) fn node_mut(&mut self, id: NodeId) -> &mut Node {

@@ -167,6 +167,45 @@ fn a_cycle_of_parents_is_refused() {
 }
 
 #[test]
+fn a_parent_has_a_transform_and_the_clock_has_none() {
+    let (mut graph, cloth, _, mesh) = sheet();
+    let node = graph.add("node", &transform::TRANSFORM).expect("free");
+    let error = graph.set_parent(node, cloth);
+    assert!(matches!(error, Err(GraphError::NoTransform { .. })), "{error:?}");
+    assert_eq!(graph.set_parent(graph.clock(), node), Err(GraphError::Clock));
+    assert_eq!(graph.node(node).parent(), None);
+    graph.set_parent(mesh, node).expect("a mesh in a transform");
+}
+
+#[test]
+fn only_meshes_are_blended() {
+    let (mut graph, cloth, _, mesh) = sheet();
+    for [one, other] in [[mesh, cloth], [cloth, mesh]] {
+        let error = graph.blend_into(one, other);
+        assert!(matches!(error, Err(GraphError::NoMesh { .. })), "{error:?}");
+    }
+}
+
+#[test]
+fn a_change_of_a_node_that_is_gone_is_refused() {
+    let (mut graph, cloth, nucleus, mesh) = sheet();
+    graph.create_cloth(cloth, mesh, nucleus).expect("not wired yet");
+    let wire = *graph.leaving(cloth).next().expect("a cloth is connected to its nucleus");
+    graph.remove(cloth);
+    let row = &n_cloth::BEND_RESISTANCE.row;
+    assert_eq!(graph.set(cloth, row, Value::Float(1.0).into()), Err(GraphError::NoNode));
+    assert_eq!(graph.rename(cloth, "other"), Err(GraphError::NoNode));
+    assert_eq!(graph.apply_preset(cloth, &[]), Err(GraphError::NoNode));
+    assert_eq!(graph.set_parent(cloth, mesh), Err(GraphError::NoNode));
+    assert_eq!(graph.set_parent(mesh, cloth), Err(GraphError::NoNode));
+    assert_eq!(graph.blend_into(mesh, cloth), Err(GraphError::NoNode));
+    assert_eq!(graph.connect(wire.from, wire.to), Err(GraphError::NoNode));
+    let mut other = Graph::new();
+    other.remove(nucleus);
+    assert_eq!(other, Graph::new(), "a node of another graph is none of this one");
+}
+
+#[test]
 fn keyed_values_are_converted_to_the_kind_of_the_attribute() {
     let (mut graph, cloth, nucleus, _) = sheet();
     let ramp = Setting::Keyed(keys(&[(1.0, 1.0), (5.0, 3.0)]));

@@ -52,6 +52,50 @@ pub enum Record {
     None,
 }
 
+/// Limit on frame numbers.
+pub(super) const MAX_FRAME: i64 = 1_000_000_000;
+
+/// Limit on frames per evaluation, and on evaluations per frame.
+const MAX_EVERY: f64 = 1000.0;
+
+/// The evaluation interval nearest to a number: a whole number of frames, or the reciprocal of one; `None` for others.
+pub(super) fn evaluation_interval(every: f64) -> Option<f64> {
+    let whole = |x: f64| (1.0..=MAX_EVERY).contains(&x) && x.fract() == 0.0;
+    // 1/3 has no exact decimal, so the nearest reciprocal is taken.
+    let parts = (1.0 / every).round();
+    match whole(every) {
+        true => Some(every),
+        false => (whole(parts) && (every * parts - 1.0).abs() < 1e-6).then_some(1.0 / parts),
+    }
+}
+
+/// Whether a number can be frames per second.
+pub(super) fn is_frame_rate(fps: f64) -> bool {
+    (1e-3..=1e6).contains(&fps)
+}
+
+impl Scene {
+    /// What is wrong with the frames of the run and their evaluation interval. A scene that was read has no such faults.
+    pub(crate) fn time_faults(&self) -> Vec<String> {
+        let TimeSpan { start, end, fps } = self.time;
+        let faults = [
+            (start.checked_abs().is_none_or(|x| x > MAX_FRAME))
+                .then(|| format!("the run starts at frame {start}, beyond the limit of {MAX_FRAME}")),
+            (end.checked_abs().is_none_or(|x| x > MAX_FRAME))
+                .then(|| format!("the run ends at frame {end}, beyond the limit of {MAX_FRAME}")),
+            (start > end).then(|| format!("the run starts at frame {start} and ends before it, at {end}")),
+            (!is_frame_rate(fps)).then(|| format!("`fps` must be from 0.001 to 1000000, found {fps}")),
+            evaluation_interval(self.every).is_none().then(|| {
+                let found = self.every;
+                format!("`every` must be a whole number of frames, or 1 divided by one, found {found}")
+            }),
+            (self.record == Record::Every(0))
+                .then(|| "`record` takes every n-th frame: n is at least 1".to_owned()),
+        ];
+        faults.into_iter().flatten().collect()
+    }
+}
+
 impl PartialEq for Scene {
     fn eq(&self, other: &Self) -> bool {
         (self.time, self.every, self.record) == (other.time, other.every, other.record)

@@ -1,17 +1,11 @@
 //! `time: (start: 1, end: 120, fps: 24)` and `record: every(10)`.
 
 use crate::diagnostic::Findings;
-use crate::scene::document::{Record, TimeSpan};
+use crate::scene::document::{MAX_FRAME, Record, TimeSpan, evaluation_interval, is_frame_rate};
 use crate::scene::syntax::{Node, Value};
 
 use super::fields::Fields;
 use super::value::{found, number, whole_number};
-
-/// Limit on frame numbers.
-const MAX_FRAME: f64 = 1e9;
-
-/// Limit on frames per evaluation, and on evaluations per frame.
-const MAX_EVERY: f64 = 1000.0;
 
 /// Reads the frames of a run, and the evaluation interval in frames.
 pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<(TimeSpan, f64)> {
@@ -43,7 +37,7 @@ pub(super) fn read(node: Option<&Node>, findings: &mut Findings) -> Option<(Time
 
 fn frame(name: &str, node: &Node, findings: &mut Findings) -> Option<i64> {
     let frame = whole_number(&format!("`{name}`"), node, findings)?;
-    if frame.abs() > MAX_FRAME {
+    if frame.abs() > MAX_FRAME as f64 {
         findings.error(&node.span, format!("frame {frame} is beyond the limit of {MAX_FRAME}"));
         return None;
     }
@@ -52,7 +46,7 @@ fn frame(name: &str, node: &Node, findings: &mut Findings) -> Option<i64> {
 
 fn frames_per_second(node: &Node, findings: &mut Findings) -> Option<f64> {
     let fps = number("`fps`", node, findings)?;
-    if !(1e-3..=1e6).contains(&fps) {
+    if !is_frame_rate(fps) {
         let error =
             findings.error(&node.span, format!("`fps` must be above 0 and at most 1000000, found {fps}"));
         error.help("Maya's film is 24, PAL 25, NTSC 30");
@@ -64,14 +58,8 @@ fn frames_per_second(node: &Node, findings: &mut Findings) -> Option<f64> {
 /// The evaluation interval: a whole number of frames, or the reciprocal of one.
 fn evaluations(node: &Node, findings: &mut Findings) -> Option<f64> {
     let every = number("`every`", node, findings)?;
-    let whole = |x: f64| (1.0..=MAX_EVERY).contains(&x) && x.fract() == 0.0;
-    // 1/3 has no exact decimal, so the nearest reciprocal is taken.
-    let parts = (1.0 / every).round();
-    if whole(every) {
-        return Some(every);
-    }
-    if whole(parts) && (every * parts - 1.0).abs() < 1e-6 {
-        return Some(1.0 / parts);
+    if let Some(interval) = evaluation_interval(every) {
+        return Some(interval);
     }
     let message = format!("`every` must be a whole number of frames, or 1 divided by one, found {every}");
     findings.error(&node.span, message).help("2 evaluates every other frame, 0.25 four times in each");
