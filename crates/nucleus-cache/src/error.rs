@@ -200,6 +200,12 @@ pub enum RecordError {
         /// The name.
         name: String,
     },
+    /// The solver lacks a cloth or a collider that is to be recorded.
+    #[error("`{object}` is to be recorded, but the solver has no such cloth or collider")]
+    NoSource {
+        /// The object.
+        object: String,
+    },
     /// A face refers to a point that does not exist.
     #[error("a face of `{object}` names a point that is not there")]
     BadMesh {

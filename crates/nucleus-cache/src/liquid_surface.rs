@@ -11,7 +11,7 @@ use std::io::{Read, Seek};
 
 use crate::error::ReadError;
 use crate::read::playback::Playback;
-use crate::run::{ObjectKind, SurfaceShape};
+use crate::run::{ObjectInfo, ObjectKind, SurfaceShape};
 
 /// The reach of a particle in its spacings.
 const REACH: f32 = 2.0;
@@ -49,18 +49,26 @@ pub struct LiquidSurface {
 
 impl<R: Read + Seek> Playback<R> {
     /// The shape of the surface of an object's particles.
-    pub fn surface_shape(&self, object: usize) -> SurfaceShape {
-        let stated = self.run().surfaces.get(&self.objects()[object].name);
-        stated.copied().unwrap_or(SurfaceShape::DEFAULT)
+    ///
+    /// # Errors
+    /// If there is no such object.
+    pub fn surface_shape(&self, object: usize) -> Result<SurfaceShape, ReadError> {
+        let stated = self.run().surfaces.get(&self.object(object)?.name);
+        Ok(stated.copied().unwrap_or(SurfaceShape::DEFAULT))
+    }
+
+    fn object(&self, object: usize) -> Result<&ObjectInfo, ReadError> {
+        let objects = self.objects().len();
+        self.objects().get(object).ok_or(ReadError::NoObject { object, objects })
     }
 
     /// The spacing of an object's particles in scene units: the median distance to the nearest other, at the first recorded
     /// time that has several. `None` for other objects.
     ///
     /// # Errors
-    /// If a frame is damaged.
+    /// If there is no such object, or a frame is damaged.
     pub fn particle_spacing(&mut self, object: usize) -> Result<Option<f32>, ReadError> {
-        if self.objects()[object].kind != ObjectKind::Particles {
+        if self.object(object)?.kind != ObjectKind::Particles {
             return Ok(None);
         }
         for sample in 0..self.time_samples().len() {

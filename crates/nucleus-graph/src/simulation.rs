@@ -286,6 +286,10 @@ struct Observers<'a> {
 }
 
 impl<R: Real> StateView for Simulation<R> {
+    fn object_counts(&self) -> Option<[usize; 2]> {
+        self.combined().object_counts()
+    }
+
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         self.combined().positions(cloth, units_per_metre, out);
     }

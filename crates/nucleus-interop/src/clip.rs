@@ -89,7 +89,7 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     ) -> Result<Option<LiquidSurface>, ExportError> {
         let Some(spacing) = self.spacings[object] else { return Ok(None) };
         let spacing = (f64::from(spacing) * self.scale) as f32;
-        let shape = self.cache.surface_shape(self.objects[object]);
+        let shape = self.cache.surface_shape(self.objects[object])?;
         Ok(Some(LiquidSurface::of(&self.positions(object, sample)?, spacing, shape)))
     }
 

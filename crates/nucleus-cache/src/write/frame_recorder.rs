@@ -30,7 +30,8 @@ impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
             return;
         }
         if !wanted {
-            self.recorder.note_motion(state);
+            let noted = self.recorder.check_sources(state).map(|()| self.recorder.note_motion(state));
+            self.recorder.deferred_error = noted.err();
             return;
         }
         self.recorder.deferred_error = self.recorder.record(self.recorder.stamp(index), state).err();
@@ -80,6 +81,7 @@ impl<W: Write + Seek> Recorder<W> {
 
     /// Writes one message per object that may have changed.
     pub(crate) fn record(&mut self, stamp: Stamp, state: &dyn StateView) -> Result<(), RecordError> {
+        self.check_sources(state)?;
         let units = self.run.units_per_metre;
         if self.run.contacts {
             state.contacts(&mut self.contacts);
@@ -140,6 +142,19 @@ impl<W: Write + Seek> Recorder<W> {
     /// each frame has one.
     fn marks_time(&self, track: usize) -> bool {
         track == 0 && self.tracks.iter().all(|track| track.kind == ObjectKind::Collider)
+    }
+
+    /// Refuses a state that lacks a recorded object.
+    fn check_sources(&self, state: &dyn StateView) -> Result<(), RecordError> {
+        let Some([cloths, colliders]) = state.object_counts() else { return Ok(()) };
+        let is_there = |track: &&Track| match track.source {
+            Source::Cloth(id) => id.index() < cloths,
+            Source::Collider(id) => id.index() < colliders,
+        };
+        match self.tracks.iter().find(|track| !is_there(track)) {
+            Some(track) => Err(RecordError::NoSource { object: track.name.clone() }),
+            None => Ok(()),
+        }
     }
 
     /// Writes strain and contact states of a cloth.

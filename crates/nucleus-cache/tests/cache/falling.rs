@@ -42,6 +42,9 @@ impl Falling {
 }
 
 impl StateView for Falling {
+    fn object_counts(&self) -> Option<[usize; 2]> {
+        Some([1, 1])
+    }
     fn positions(&self, _: ClothId, units: f64, out: &mut Vec<[f32; 3]>) {
         out.clear();
         out.extend((0..4).map(|k| [k as f32, self.height(), 0.25].map(|x| x * units as f32)));

@@ -4,7 +4,8 @@ use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
-use nucleus_cache::{OpenError, Playback, RecordError, Recorder, RunInfo};
+use nucleus_cache::{OpenError, Playback, ReadError, RecordError, Recorder, RunInfo, Source};
+use nucleus_core::{ClothId, ColliderId};
 
 use crate::falling;
 
@@ -143,4 +144,25 @@ fn an_object_with_another_number_of_points_is_named() {
     let mut recorder = Recorder::to_writer(disk, &falling::run_info(), objects).unwrap();
     let error = falling::record(&mut recorder, falling::END).unwrap_err();
     assert_eq!(error.to_string(), "`floor` has 3 points in the solver but was announced with 4");
+}
+
+#[test]
+fn an_object_that_a_cache_lacks_is_refused() {
+    let (bytes, _) = falling::whole_run(&falling::run_info());
+    let mut cache = Playback::read(Cursor::new(bytes)).unwrap();
+    let is_refused = |error: ReadError| matches!(error, ReadError::NoObject { object: 99, .. });
+    assert!(cache.surface_shape(99).is_err_and(is_refused));
+    assert!(cache.particle_spacing(99).is_err_and(is_refused));
+}
+
+#[test]
+fn an_object_that_the_solver_lacks_is_refused_when_it_is_recorded() {
+    for source in [Source::Cloth(ClothId(1)), Source::Collider(ColliderId(u32::MAX))] {
+        let mut objects = falling::objects();
+        objects[0].0 = source;
+        let mut recorder =
+            Recorder::to_writer(Cursor::new(Vec::new()), &falling::run_info(), objects).unwrap();
+        let error = recorder.record_start(&falling::Falling::INITIAL).unwrap_err();
+        assert!(matches!(error, RecordError::NoSource { .. }), "{error}");
+    }
 }

@@ -39,6 +39,11 @@ impl CombinedState<'_> {
 }
 
 impl StateView for CombinedState<'_> {
+    fn object_counts(&self) -> Option<[usize; 2]> {
+        let counts = self.parts.iter().map(|part| part.object_counts());
+        counts.reduce(|all, own| all.zip(own).map(|([a, b], [c, d])| [a + c, b + d])).flatten()
+    }
+
     fn positions(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         let (part, id, nucleus) = self.cloth(cloth);
         part.positions(id, self.units(units_per_metre, nucleus), out);

@@ -179,7 +179,9 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     pub fn moment(&mut self, moment: usize) -> Result<Image, ViewError> {
         let (mut states, camera) = (states(self.cache, moment)?, self.camera_at(moment));
         for (object, (state, spacing)) in states.iter_mut().zip(&self.spacings).enumerate() {
-            spacing.iter().for_each(|spacing| state.cover(*spacing, self.cache.surface_shape(object)));
+            let Some(spacing) = spacing else { continue };
+            let shape = self.cache.surface_shape(object).map_err(|source| ViewError::Read { source })?;
+            state.cover(*spacing, shape);
         }
         let style = Style { ground: self.ground_at(moment), ..self.style.clone() };
         Ok(draw_with(&mut self.fragments, &objects(self.cache, moment, &states)?, &camera, &style))

@@ -18,7 +18,7 @@ pub(super) fn surface(cache: &Path, wanted: &str) -> Option<Vec<u8>> {
     let samples = cache.time_samples();
     let sample = (0..samples.len()).filter(|&at| samples[at].frame == frame).nth(k)?;
     let spacing = cache.particle_spacing(object).ok()??;
-    let (positions, shape) = (cache.positions(object, sample).ok()?, cache.surface_shape(object));
+    let (positions, shape) = (cache.positions(object, sample).ok()?, cache.surface_shape(object).ok()?);
     Some(encoded(&LiquidSurface::of(&positions, spacing, shape)))
 }
 
