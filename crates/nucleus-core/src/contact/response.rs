@@ -33,7 +33,7 @@ impl<R: Real> Mobility<R> {
     pub fn of<const N: usize>(inverse_masses: [R; N], weights: [R; N]) -> Self {
         let mut own = Self { sum: R::ZERO, largest: R::ZERO };
         for k in 0..N {
-            own.sum = own.sum + inverse_masses[k] * weights[k] * weights[k];
+            own.sum += inverse_masses[k] * weights[k] * weights[k];
             own.largest = max(own.largest, inverse_masses[k]);
         }
         own
