@@ -39,7 +39,7 @@ struct Run {
     moved: BTreeMap<usize, Vec<Vector3<f64>>>,
     positions: Vec<Buffer>,
     velocities: Vec<Buffer>,
-    /// A frame was interrupted: the state is in the middle of a time step.
+    /// A frame was not finished: the state is in the middle of a time step.
     is_broken: bool,
 }
 
@@ -105,6 +105,8 @@ impl Run {
                 ObjectKind::Cloth(_) => None,
             })
             .collect();
+        // A panic leaves the state in the middle of a time step too.
+        self.is_broken = true;
         let mut watch = Watch { looked: Cell::new(Instant::now()), signal: RefCell::new(None) };
         let report = self.simulation.advance_with(
             &mut |_, input| {
@@ -117,9 +119,9 @@ impl Run {
             &mut watch,
         );
         if let Some(signal) = watch.signal.into_inner() {
-            self.is_broken = true;
             return Err(signal);
         }
+        self.is_broken = false;
         self.judge.see(&report);
         let frame = i32::try_from(frame).unwrap_or(i32::MAX);
         Ok(nucleus_cli::frame_figures(frame, &report.report).to_string())
