@@ -91,7 +91,6 @@ pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::link::fold::fold_link;
 pub use constraints::link::glue::{LOAD_OF_HALF, breaking_load};
 pub use constraints::pressure::PASCALS_PER_PRESSURE;
-pub use contact::pair_filter::MAX_EXCLUSIONS;
 pub use input::fields::{Field, FieldKind, Noise, Reach, Volume, VolumeAxis, VolumeShape};
 pub use input::frame::{
     BendSolver, Bending, Birth, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
@@ -100,6 +99,7 @@ pub use input::frame::{
 };
 pub use input::links::{
     ConstraintFrame, ExcludedSide, Exclusion, Falloff, Fold, Link, LinkForce, LinkMethod, LinkSide,
+    MAX_EXCLUSIONS,
 };
 pub use input::object_fields::{PointField, WindField};
 pub use input::particles::{
@@ -108,7 +108,8 @@ pub use input::particles::{
 pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};
 pub use model::build_error::BuildError;
-pub use model::builder::{Cloth, ClothLists, Collider, LinkOrder, Mass, ModelBuilder, Particles, Start};
+pub use model::builder::ModelBuilder;
+pub use model::objects::{Cloth, ClothLists, Collider, LinkOrder, Mass, Particles, Start};
 pub use model::surface::{Faces, Surface};
 pub use model::vertex_maps::VertexMaps;
 pub use output::{

@@ -8,7 +8,7 @@ use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane, Resi
 use crate::input::particles::{ParticleRamp, RampTarget};
 use crate::math::Real;
 use crate::model::ClothModel;
-use crate::model::builder::Cloth;
+use crate::model::objects::Cloth;
 use crate::model::vertex_maps::VertexMaps;
 
 /// Smallest contact thickness in metres: certificates need a gap above rounding error.

@@ -3,12 +3,9 @@
 //! The broad phase asks it for every candidate. Empty columns, in scenes without such constraints, cost a length check.
 
 use crate::bytes::checkpoint_struct;
-use crate::input::links::{ExcludedSide, Exclusion};
+use crate::input::links::{ExcludedSide, Exclusion, MAX_EXCLUSIONS};
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
-
-/// Exclusions in a frame, at most: each has a bit. More have no effect.
-pub const MAX_EXCLUSIONS: usize = 64;
 
 /// The exclusions that have a point on their first and on their second side, as bits.
 type Sides = [u64; 2];

@@ -19,7 +19,7 @@ use crate::contact::pair_filter::PairFilter;
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4};
-use crate::model::builder::Cloth;
+use crate::model::objects::Cloth;
 use crate::model::vertex_maps::VertexMaps;
 use crate::model::{ClothModel, ColliderModel, Model};
 use crate::output::ContactState;

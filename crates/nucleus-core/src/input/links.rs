@@ -246,6 +246,9 @@ impl ConstraintFrame {
     }
 }
 
+/// Exclusions in a frame, at most: each has a bit. More have no effect.
+pub const MAX_EXCLUSIONS: usize = 64;
+
 /// Elements that do not collide with each other.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exclusion {

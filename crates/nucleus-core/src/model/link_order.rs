@@ -3,7 +3,7 @@
 
 use crate::constraints::stretch::{LinkGroup, LinkRow};
 use crate::math::Real;
-use crate::model::builder::LinkOrder;
+use crate::model::objects::LinkOrder;
 use crate::model::surface::Surface;
 use crate::model::topology::stretch_links;
 

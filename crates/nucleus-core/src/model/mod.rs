@@ -8,7 +8,7 @@
 //!
 //! | You want to know… | Read |
 //! |---|---|
-//! | what a cloth or collider is built from, and what is refused | [`builder`], [`build_error`], `refusals.rs` |
+//! | what a cloth or collider is built from, and what is refused | [`objects`], [`builder`], [`build_error`], `refusals.rs` |
 //! | polygon meshes | [`surface`] |
 //! | edges, cross links, seams, areas | `topology.rs` |
 //! | the order of points; the order of links | `order.rs`, `link_order.rs` |
@@ -22,6 +22,7 @@ pub mod build_error;
 pub mod builder;
 pub mod geodesic;
 pub mod link_order;
+pub mod objects;
 pub mod order;
 mod refusals;
 pub mod rows;
@@ -44,7 +45,7 @@ use crate::constraints::stretch::{LinkGroup, LinkRow, shear_rows};
 use crate::contact::boundary::{BoundaryElements, Pseudonormals, sort_spatially};
 use crate::math::Real;
 use crate::model::blocks::{Blocks, triangles_by_block};
-use crate::model::builder::{Cloth, Collider, LinkOrder, Mass, point_masses};
+use crate::model::objects::{Cloth, Collider, LinkOrder, Mass, point_masses};
 use crate::model::order::Order;
 use crate::model::rows::RowList;
 use crate::model::strength_maps::{AirFactors, MapReader, StrengthMaps, weave_of};

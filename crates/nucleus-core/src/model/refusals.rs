@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::input::particles::{CollisionEvent, ParticleRamp};
 use crate::input::validation::{MAX_COORDINATE, is_in_range};
 use crate::model::build_error::BuildError;
-use crate::model::builder::{Cloth, Particles, Start};
+use crate::model::objects::{Cloth, Particles, Start};
 use crate::model::surface::Surface;
 
 /// Refuses woven cloth in which a face has no direction of the warp.

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::input::frame::Birth;
 use crate::input::particles::{CollisionEvent, ParticleFacts, ParticleRamp, RampInput, RampTarget};
-use crate::model::builder::{Cloth, Mass, point_masses};
+use crate::model::objects::{Cloth, Mass, point_masses};
 use crate::output::ParticleAge;
 
 /// The rotation of a particle.

@@ -2,7 +2,7 @@
 
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
-use crate::model::builder::{Cloth, point_masses};
+use crate::model::objects::{Cloth, point_masses};
 use crate::particles::population::Population;
 use crate::state::State;
 

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::attributes::{MAX_COORDINATE, MAX_FACTOR, is_in_range, sanitize_numbers};
-use super::{InvalidInput, LastPositions, Sanitized};
-use crate::contact::pair_filter::MAX_EXCLUSIONS;
-use crate::input::links::{ConstraintFrame, ExcludedSide, Exclusion, Falloff, LinkForce};
+use super::sanitized::{InvalidInput, LastPositions, Sanitized};
+use crate::input::links::{ConstraintFrame, ExcludedSide, Exclusion, Falloff, LinkForce, MAX_EXCLUSIONS};
 
 pub(super) fn is_valid_constraint(constraint: &ConstraintFrame, last: &impl LastPositions) -> bool {
     let links = constraint.formed.iter().flatten().all(|link| last.has_link(link));

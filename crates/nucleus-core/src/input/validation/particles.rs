@@ -1,7 +1,7 @@
 //! Validation of births and of changes of particles: invalid ones are dropped.
 
 use super::attributes::is_in_range;
-use super::{InvalidInput, LastPositions, Sanitized};
+use super::sanitized::{InvalidInput, LastPositions, Sanitized};
 use crate::input::frame::{Birth, FrameInput};
 use crate::input::particles::ParticleChange;
 
