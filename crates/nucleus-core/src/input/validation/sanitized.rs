@@ -10,10 +10,10 @@ use crate::input::{ClothId, ColliderId, PointId};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidInput {
-    /// The number of entries in [`FrameInput::cloths`] differs from the number of cloths.
+    /// The number of entries in [`FrameInput::cloths`](crate::FrameInput::cloths) differs from the number of cloths.
     #[error("the frame has not one entry per cloth; `Solver::default_frame` makes one")]
     ClothCount,
-    /// The number of entries in [`FrameInput::colliders`] differs from the number of colliders.
+    /// The number of entries in [`FrameInput::colliders`](crate::FrameInput::colliders) differs from the number of colliders.
     #[error("the frame has not one entry per collider; `Solver::default_frame` makes one")]
     ColliderCount,
     /// The position of a point of a collider.
