@@ -7,6 +7,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use nucleus_graph::attributes::{Attribute, Effect, Kind, NodeType, Range, Value, node_type, node_types};
 use nucleus_graph::checks::{Form, RENAMED};
+use nucleus_graph::compile::defaults_by_type;
 use nucleus_graph::paint;
 use nucleus_graph::scene::{Preset, presets};
 use nucleus_maya::maya_preset;
@@ -74,7 +75,8 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
                 Effect::Never => " No effect, in Maya neither.".to_owned(),
                 Effect::Elsewhere(reason) => format!(" No effect: {reason}."),
             };
-            writeln!(text, "  {name:<36} {}\n      {}{without_effect}", facts(row), row.doc())?;
+            let facts = facts(node_type, row);
+            writeln!(text, "  {name:<36} {facts}\n      {}{without_effect}", row.doc())?;
         }
     }
     if left_out > 0 {
@@ -83,12 +85,16 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
     Ok(text)
 }
 
-/// Kind, default, range and unit in one line.
-fn facts(row: &Attribute) -> String {
+/// Kind, defaults, range and unit in one line.
+fn facts(node_type: &NodeType, row: &Attribute) -> String {
     let mut facts = vec![kind(row)];
     // A default that depends on the scene is in the documentation.
     let constant = row.default.as_ref().filter(|_| !row.doc().contains("Default: "));
     facts.extend(constant.and_then(|value| default(row, value)).map(|value| format!("= {value}")));
+    let by_type = if node_type.name == "dynamicConstraint" { defaults_by_type(row) } else { Vec::new() };
+    let of_type = |(word, value): &(String, Value)| Some(format!("{} for {word}", default(row, value)?));
+    let by_type: Vec<String> = by_type.iter().filter_map(of_type).collect();
+    facts.extend(Some(format!("({})", by_type.join(", "))).filter(|_| !by_type.is_empty()));
     facts.extend(range(row.range));
     facts.extend(Some(row.unit.to_owned()).filter(|unit| !unit.is_empty()));
     facts.join("  ")

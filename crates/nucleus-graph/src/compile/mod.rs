@@ -87,6 +87,7 @@ use program::ProgramData;
 
 pub(crate) use attachments::AttachmentState;
 pub use camera::{Camera, FilmFit, View};
+pub use constraints::kinds::defaults_by_type;
 pub(crate) use geometry::max_points;
 pub use geometry::primitive_surface;
 pub(crate) use liquids::self_collides;

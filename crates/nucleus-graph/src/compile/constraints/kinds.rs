@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use nucleus_core::Falloff;
 
-use crate::attributes::{Choice, FromValue, Key, RampPoint, dynamic_constraint as con};
+use crate::attributes::{
+    Attribute, Choice, FromValue, Key, Kind, RampPoint, Value, dynamic_constraint as con,
+};
 use crate::compile::force_fields::ramp_at;
 use crate::graph::{EvalContext, NodeId};
 
@@ -61,6 +63,21 @@ const WRITTEN: &[(i32, &str, f64)] = &[
     (EXCLUDE_PAIRS, "tangentStrength", 0.0),
     (EXCLUDE_PAIRS, "excludeCollisions", 1.0),
 ];
+
+/// The defaults of an attribute of constraints in the types that have their own, with the names of the types.
+pub fn defaults_by_type(attribute: &Attribute) -> Vec<(String, Value)> {
+    let types = con::CONSTRAINT_TYPE.row.words();
+    let of_type = |&(kind, name, value): &(i32, &str, f64)| {
+        let (_, word) = types.iter().find(|(index, _)| index.0 == kind).filter(|_| name == attribute.name)?;
+        let value = match attribute.kind {
+            Kind::Choice(_) => Value::Choice(Choice(value as i32)),
+            Kind::Bool => Value::Bool(value != 0.0),
+            _ => Value::Float(value),
+        };
+        Some((word.clone(), value))
+    };
+    WRITTEN.iter().filter_map(of_type).collect()
+}
 
 /// Attributes that turn the pins of a transform constraint into springs, or add a force to them.
 pub(super) const SOFT: &[&str] = &[
