@@ -47,6 +47,7 @@ fn assert_resumes<R: Real>(name: &str, program: &Program, frames: usize, every: 
 /// With both precisions and both resistance models.
 fn assert_resumes_always(name: &str, nodes: &str, frames: usize) -> Run {
     let classic = nodes.replacen("nucleus(", "nucleus(resistanceModel: classic, ", 1);
+    let classic = classic.replacen(", evaluations: 48", "", 1);
     assert_resumes::<f32>(&format!("{name}, classic"), &program_of(&classic), frames, 3);
     assert_resumes::<f64>(&format!("{name}, f64"), &program_of(nodes), frames, 3);
     assert_resumes::<f32>(name, &program_of(nodes), frames, 1)

@@ -247,6 +247,18 @@ fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
         }
         InvalidInput::CreationExpression(id) => expression("creationExpression", id),
         InvalidInput::RuntimeExpression(id) => expression("runtimeExpression", id),
+        InvalidInput::Birth(id) => {
+            format!("a new particle of `{}` had no usable value, and was not emitted", name(cloth(id)))
+        }
+        InvalidInput::ParticleChange(id) => {
+            format!("a change of a particle of `{}` had no usable value, and was dropped", name(cloth(id)))
+        }
+        InvalidInput::Exclusion(_) => {
+            "a constraint excludes the collisions of points that do not exist".to_owned()
+        }
+        InvalidInput::Constraint(_) => {
+            "a constraint had no usable value, or a link to points that do not exist".to_owned()
+        }
         InvalidInput::Cloth(id) => format!("an attribute of `{}` had no usable value", name(cloth(id))),
         InvalidInput::Collider(id) => {
             format!("an attribute of `{}` had no usable value", name(collider(id)))
