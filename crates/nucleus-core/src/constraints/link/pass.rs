@@ -113,9 +113,7 @@ pub fn max_weld_gap<R: Real>(
             let ends = Ends::new(link, &model.cloths);
             let length = vector(link, &ends, state, prescribed, 1.0).norm();
             let rest = link.rest * settings.rest_scale[1];
-            // Points that are welded to each other do not collide.
-            let kept_apart = if link.points().is_some() { 0.0 } else { collisions.distance(link) };
-            let longest = rest.max(kept_apart);
+            let longest = rest.max(collisions.distance(link));
             most = most.max(rest - length).max(length - longest);
         }
     }

@@ -1,11 +1,11 @@
-//! Whether links refer to points that exist.
+//! Whether links refer to points that exist, with numbers in range.
 
 use crate::input::links::{Link, LinkSide};
 use crate::input::validation::{MAX_FACTOR, is_in_range};
 
 /// Largest weight of a point; those of a fold are large where its faces are small.
 const MAX_WEIGHT: f64 = 1e9;
-/// Largest length of a link in metres: what moves a point so far in one step is finite in `f32`.
+/// Largest length of a link in metres: the velocity of a point that moves so far in a time step is finite in `f32`.
 const MAX_LENGTH: f64 = 1e9;
 
 /// The number of points of each cloth and collider, where there is one.
