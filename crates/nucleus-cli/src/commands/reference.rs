@@ -86,14 +86,13 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
 }
 
 /// Kind, defaults, range and unit in one line.
-fn facts(node_type: &NodeType, row: &Attribute) -> String {
+fn facts(node_type: &'static NodeType, row: &Attribute) -> String {
     let mut facts = vec![kind(row)];
     // A default that depends on the scene is in the documentation.
     let constant = row.default.as_ref().filter(|_| !row.doc().contains("Default: "));
     facts.extend(constant.and_then(|value| default(row, value)).map(|value| format!("= {value}")));
-    let by_type = if node_type.name == "dynamicConstraint" { defaults_by_type(row) } else { Vec::new() };
     let of_type = |(word, value): &(String, Value)| Some(format!("{} for {word}", default(row, value)?));
-    let by_type: Vec<String> = by_type.iter().filter_map(of_type).collect();
+    let by_type: Vec<String> = defaults_by_type(node_type, row).iter().filter_map(of_type).collect();
     facts.extend(Some(format!("({})", by_type.join(", "))).filter(|_| !by_type.is_empty()));
     facts.extend(range(row.range));
     facts.extend(Some(row.unit.to_owned()).filter(|unit| !unit.is_empty()));

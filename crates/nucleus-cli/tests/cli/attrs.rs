@@ -27,6 +27,16 @@ fn an_attribute_without_effect_is_listed_with_the_reason() {
 }
 
 #[test]
+fn the_defaults_of_a_type_of_constraint_stand_beside_those_of_the_node() {
+    let folder = folder();
+    let said = stdout(&nucleus(folder.path(), &["attrs", "dynamicConstraint"]));
+    let row = said.lines().find(|line| line.contains("friction (frc)")).expect("it is listed");
+    assert!(row.contains("= 0  (0.1 for slideOnSurface)"), "{row}");
+    let row = said.lines().find(|line| line.contains("constraintMethod (")).expect("it is listed");
+    assert!(row.contains("weld for weldBorders"), "{row}");
+}
+
+#[test]
 fn without_a_type_all_types_are_listed() {
     let folder = folder();
     let said = stdout(&nucleus(folder.path(), &["attrs"]));

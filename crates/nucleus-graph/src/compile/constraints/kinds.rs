@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use nucleus_core::Falloff;
 
 use crate::attributes::{
-    Attribute, Choice, FromValue, Key, Kind, RampPoint, Value, dynamic_constraint as con,
+    Attribute, Choice, FromValue, Key, Kind, NodeType, RampPoint, Value, dynamic_constraint as con,
 };
 use crate::compile::force_fields::ramp_at;
 use crate::graph::{EvalContext, NodeId};
@@ -64,8 +64,12 @@ const WRITTEN: &[(i32, &str, f64)] = &[
     (EXCLUDE_PAIRS, "excludeCollisions", 1.0),
 ];
 
-/// The defaults of an attribute of constraints in the types that have their own, with the names of the types.
-pub fn defaults_by_type(attribute: &Attribute) -> Vec<(String, Value)> {
+/// The defaults of an attribute of a constraint in the types that have their own, with the names of the types; none of other
+/// nodes.
+pub fn defaults_by_type(node_type: &'static NodeType, attribute: &Attribute) -> Vec<(String, Value)> {
+    if !node_type.is_a(&con::DYNAMIC_CONSTRAINT) {
+        return Vec::new();
+    }
     let types = con::CONSTRAINT_TYPE.row.words();
     let of_type = |&(kind, name, value): &(i32, &str, f64)| {
         let (_, word) = types.iter().find(|(index, _)| index.0 == kind).filter(|_| name == attribute.name)?;
