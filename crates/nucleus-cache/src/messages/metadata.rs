@@ -35,6 +35,33 @@ const PACKING: &str = "packing";
 const SMALL: &str = "small";
 /// Key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
+/// Keys that the format defines, whether or not a run has them.
+const RESERVED: [&str; 17] = [
+    "format",
+    "start",
+    "end",
+    "fps",
+    "units_per_metre",
+    "record",
+    "velocities",
+    "version",
+    CONTACTS.topic,
+    STRAIN.topic,
+    LOOKS.topic,
+    ROTATION.topic,
+    COUNT_OF_CAMERAS,
+    GROUND,
+    GROUND_MOTION,
+    CHECKPOINT,
+    PACKING,
+];
+
+/// Whether the format defines a key of the record `nucleus.run`.
+fn is_reserved(key: &str) -> bool {
+    RESERVED.contains(&key)
+        || key == CHECKSUM
+        || [RADIUS, SURFACE].iter().any(|prefix| key.starts_with(prefix))
+}
 
 impl RunInfo {
     pub(crate) fn to_metadata(&self) -> [Metadata; 2] {
@@ -44,6 +71,8 @@ impl RunInfo {
             Detail::Every(n) => format!("every {n}"),
         };
         let mut run = self.extra.clone();
+        // A default is written as no key, so a further fact of that name would be read as a value.
+        run.retain(|key, _| !is_reserved(key));
         run.extend(
             [
                 ("format", FORMAT.to_string()),
@@ -313,6 +342,29 @@ mod tests {
             let run = RunInfo { detail, checkpoint: 24, packing: Packing::Small, ..run.clone() };
             assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
         }
+    }
+
+    #[test]
+    fn further_facts_cannot_take_the_names_of_values_of_the_format() {
+        let view = CameraView::default();
+        let shape = SurfaceShape { threshold: 0.7, radius_scale: 1.5 };
+        let complete = RunInfo {
+            looks: true,
+            rotation: true,
+            ground: Some(Plane { origin: [0.0; 3], normal: [0.0, 1.0, 0.0] }),
+            ground_motion: vec![Plane { origin: [0.0; 3], normal: [0.0, 1.0, 0.0] }],
+            radii: BTreeMap::from([("beads".to_owned(), 0.1)]),
+            surfaces: BTreeMap::from([("beads".to_owned(), shape)]),
+            cameras: vec![Camera { name: "shot".to_owned(), fit: FilmFit::Vertical, views: vec![view; 2] }],
+            checkpoint: 24,
+            packing: Packing::Small,
+            ..RunInfo::default()
+        };
+        let [_, written] = complete.to_metadata();
+        let extra: BTreeMap<String, String> = written.metadata;
+        assert!(extra.len() >= RESERVED.len() + 2, "every key of the format is among them: {extra:?}");
+        let run = RunInfo { extra, ..RunInfo::default() };
+        assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (RunInfo::default(), true));
     }
 
     /// The error for a run with one changed value.
