@@ -7,7 +7,8 @@ use codespan_reporting::diagnostic::{Diagnostic as Shown, Label};
 use codespan_reporting::files::{Error, Files, SimpleFile};
 use codespan_reporting::term::termcolor::{Buffer, BufferWriter, ColorChoice};
 use codespan_reporting::term::{Config, emit_to_write_style};
-use nucleus_graph::scene::{Diagnostic, Severity, nearest};
+use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::scene::{Diagnostic, Scene, Severity, nearest};
 
 use crate::{figures, output};
 
@@ -39,6 +40,14 @@ pub fn print(diagnostics: &[Diagnostic], text: &str) -> anyhow::Result<()> {
     }
     writeln!(buffer, "{}", count(diagnostics))?;
     Ok(writer.print(&buffer)?)
+}
+
+/// The program of a scene that was changed after it was read. The error says `message`, and the first diagnostic.
+pub fn compile_changed(scene: &Scene, message: &str) -> anyhow::Result<Program> {
+    compile(scene).map_err(|found| {
+        let first = found.into_iter().next().map(|one| one.message).unwrap_or_default();
+        anyhow::anyhow!("{message}: {first}")
+    })
 }
 
 /// `2 errors, 1 warning`.

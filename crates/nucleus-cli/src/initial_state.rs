@@ -6,15 +6,15 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use nucleus_cache::{ObjectKind, Playback};
 use nucleus_graph::attributes::{Attribute, Value, n_base, n_particle};
-use nucleus_graph::compile::{self, Object, Program, compile};
+use nucleus_graph::compile::{self, Object, Program};
 use nucleus_graph::graph::Setting;
-use nucleus_graph::scene::{Diagnostic, Scene};
+use nucleus_graph::scene::Scene;
 
-use crate::files;
 use crate::output::say;
+use crate::{diagnostics, files};
 
 /// A frame of a cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -81,13 +81,8 @@ impl InitialState {
                 self.cache.display()
             );
         }
-        let first = |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next();
-        let program = compile(&scene).map_err(|found| {
-            anyhow!(
-                "the scene does not compile with this initial state: {}",
-                first(found).unwrap_or_default()
-            )
-        })?;
+        let program =
+            diagnostics::compile_changed(&scene, "the scene does not compile with this initial state")?;
         Ok((scene, program))
     }
 

@@ -26,6 +26,8 @@ pub const PROGRAM: &str = "program";
 pub const SCALAR: &str = "scalar";
 /// Key of the setting that `--quality` selected.
 pub const SETTING: &str = "setting";
+/// Key of `--audit`, which a resumed run continues.
+pub const AUDIT: &str = "audit";
 /// Key of the seed of `--seed`.
 pub const SEED: &str = "seed";
 

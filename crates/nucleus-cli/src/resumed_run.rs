@@ -7,15 +7,16 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use nucleus_cache::{Checkpoint, ObjectInfo, OpenError, Playback, ReadError};
 use nucleus_core::{Real, RestoreError};
 use nucleus_graph::Simulation;
-use nucleus_graph::compile::{Program, compile};
+use nucleus_graph::compile::Program;
 use nucleus_graph::scene::Scene;
 use nucleus_measure::trade::Benchmark;
+use serde_json::Value;
 
-use crate::files;
 use crate::options::Scalar;
 use crate::output::say;
-use crate::recording::{PROGRAM, SCALAR, SEED, SETTING, fingerprint};
+use crate::recording::{AUDIT, PROGRAM, SCALAR, SEED, SETTING, fingerprint};
 use crate::run_statistics::FrameStatistics;
+use crate::{diagnostics, figures, files};
 
 /// A run that is resumed from its cache.
 pub struct ResumedRun {
@@ -105,21 +106,17 @@ impl ResumedRun {
         let run = self.cache.run();
         let own_end = if is_changed { scene.time.end } else { run.end.into() };
         scene.time.end = end.map_or(own_end, i64::from);
-        let broken = |found: Vec<nucleus_graph::scene::Diagnostic>| {
-            let first = found.into_iter().map(|one| one.message).next().unwrap_or_default();
-            anyhow!("the scene of the run does not compile: {first}")
-        };
         if let Some(setting) = run.extra.get(SETTING) {
             let setting = serde_json::from_str(setting).context("the cache's `setting` cannot be read")?;
             *scene = Benchmark::new(scene)?.set(&setting);
         }
-        let program = compile(scene).map_err(broken)?;
+        let program = diagnostics::compile_changed(scene, "the scene of the run does not compile")?;
         if program.time().start == i64::from(run.start) {
             return Ok(program);
         }
         // `--frames` of the run replaced the frame range of the scene.
         scene.time.start = run.start.into();
-        compile(scene).map_err(broken)
+        diagnostics::compile_changed(scene, "the scene of the run does not compile")
     }
 
     /// The path of the scene, beside which meshes are found. If it no longer exists, a scene of that name beside the cache.
@@ -230,16 +227,71 @@ impl ResumedRun {
         }
     }
 
-    /// The recorded figures of the frames up to `last`, in order.
-    pub fn figures(&mut self, last: i32) -> Result<Vec<FrameStatistics>> {
-        let reports = self.cache.reports()?;
-        let figures =
-            reports.into_iter().filter_map(|report| serde_json::from_value::<FrameStatistics>(report).ok());
-        Ok(figures.filter(|figures| figures.frame <= last).collect())
+    /// Whether the run was audited at every time step.
+    pub fn is_audited(&self) -> bool {
+        self.cache.run().extra.contains_key(AUDIT)
+    }
+
+    /// The recorded figures of the frames up to `last`, in order. `needs_audit`: frames without an audit are reported, as are
+    /// figures that cannot be read.
+    pub fn figures(&mut self, last: i32, needs_audit: bool) -> Result<Vec<FrameStatistics>> {
+        let (mut figures, unread) = parse_figures(self.cache.reports()?);
+        if let Some(first) = unread.first() {
+            let count = figures::count(unread.len(), "frame");
+            say!(
+                "warning: checks do not see {count} of {}, whose figures cannot be read: {first}",
+                self.name()
+            );
+        }
+        figures.retain(|figures| figures.frame <= last);
+        let unaudited = figures.iter().filter(|figures| figures.passed_through.is_none()).count();
+        if needs_audit && unaudited > 0 {
+            let count = figures::count(unaudited, "frame");
+            say!("warning: no audit sees {count} of {}, recorded without one", self.name());
+        }
+        Ok(figures)
     }
 
     /// The name of the file in backquotes, for messages.
     pub fn name(&self) -> String {
         format!("`{}`", self.file.display())
+    }
+}
+
+/// The figures of each frame, and the reasons why those of some frames cannot be read.
+fn parse_figures(reports: Vec<Value>) -> (Vec<FrameStatistics>, Vec<String>) {
+    let (mut figures, mut unread) = (Vec::new(), Vec::new());
+    for report in reports {
+        let frame = report["frame"].clone();
+        match serde_json::from_value(report) {
+            Ok(found) => figures.push(found),
+            Err(error) => unread.push(format!("frame {frame}: {error}")),
+        }
+    }
+    (figures, unread)
+}
+
+#[cfg(test)]
+mod tests {
+    use nucleus_core::StepReport;
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn figures_that_cannot_be_read_are_named_by_their_frame() {
+        let whole = json!(FrameStatistics::new(3, &StepReport::default()));
+        let (figures, unread) = parse_figures(vec![json!({ "frame": 2, "max_strain": 0.1 }), whole]);
+        assert_eq!(figures.iter().map(|figures| figures.frame).collect::<Vec<_>>(), [3]);
+        assert_eq!(unread.len(), 1);
+        assert!(unread[0].starts_with("frame 2: missing field"), "{}", unread[0]);
+    }
+
+    #[test]
+    fn a_frame_of_infinite_energy_is_read() {
+        let report = StepReport { kinetic_energy: f64::INFINITY, ..StepReport::default() };
+        let (figures, unread) = parse_figures(vec![json!(FrameStatistics::new(2, &report))]);
+        assert_eq!((figures.len(), unread.len()), (1, 0));
+        assert!(figures[0].kinetic_energy.is_nan());
     }
 }

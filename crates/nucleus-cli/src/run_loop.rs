@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use nucleus_cache::{RecordError, Recorder};
 use nucleus_core::{Real, Stage, StateView, StepObserver, SubstepIndex};
-use nucleus_graph::checks::Judge;
+use nucleus_graph::audit::Closeness;
+use nucleus_graph::checks::{Check, Judge};
+use nucleus_graph::scene::TimeSpan;
 use nucleus_graph::{FrameReport, Simulation, flat_cloths};
 use serde_json::{Value, json};
 
@@ -17,37 +19,66 @@ use crate::run_statistics::{Ending, FrameStatistics, RunStatistics, Stopped};
 use crate::summary::Summary;
 use crate::{output, process};
 
-/// A run that is set up.
-pub struct Run<R: Real> {
+/// A run that is set up: the rest of a simulation, its checks and its audit.
+pub struct RunLoop<R: Real> {
     pub simulation: Simulation<R>,
+    judge: Judge,
+    /// The statistics of the frames so far.
+    statistics: RunStatistics,
+    /// Whether findings of the audit are part of the outcome.
+    is_audited: bool,
+}
+
+/// The cache that a run writes.
+pub struct Recording {
     /// `None` if the run is not recorded.
     pub recorder: Option<Recorder>,
     /// The file of the cache.
     pub out: PathBuf,
     /// Whether the cache replaces another run's; an interrupted run must not.
     pub replaces: bool,
-    pub judge: Judge,
-    /// The statistics of the frames so far.
-    pub statistics: RunStatistics,
-    /// The start frame.
-    pub start: i32,
-    /// Frames that remain to be simulated.
-    pub frames: u32,
-    /// Whether findings of the audit are part of the outcome.
-    pub audit: bool,
-    /// Whether each frame is reported as JSON.
-    pub json: bool,
 }
 
-impl<R: Real> Run<R> {
-    /// Runs to the last frame.
+impl<R: Real> RunLoop<R> {
+    /// A run from the current frame of a simulation to the last frame of its program. With `is_audited` every time step is
+    /// audited, else every frame if a check needs it.
+    pub fn new(mut simulation: Simulation<R>, is_audited: bool) -> Self {
+        let program = simulation.program();
+        let judge = Judge::new(program.checks(), program.mass());
+        if is_audited {
+            simulation.begin_audit(Closeness::Steps);
+        } else if program.checks().iter().any(Check::needs_audit) {
+            simulation.begin_audit(Closeness::Frames);
+        }
+        Self { simulation, judge, statistics: RunStatistics::default(), is_audited }
+    }
+
+    /// Adds a frame before the current one, as a cache holds it.
+    pub fn add_recorded(&mut self, figures: &FrameStatistics) {
+        self.judge.see(&figures.report());
+        self.statistics.add_recorded(figures);
+    }
+
+    /// The first frame so far with a position or velocity that is not finite.
+    pub fn not_finite(&self) -> Option<i32> {
+        self.statistics.not_finite
+    }
+
+    /// Runs to the last frame. With `json` each frame is reported as JSON.
     ///
     /// # Errors
     /// If the run ended with an error of which `is_refusal` is true.
-    pub fn finish(self, is_refusal: impl Fn(&anyhow::Error) -> bool) -> Result<Finished> {
-        let Self { mut simulation, mut recorder, out, replaces, mut judge, statistics, .. } = self;
-        let Self { start, frames, audit, json, .. } = self;
-        let mut progress = RunProgress::new(frames, simulation.frame() + i64::from(frames));
+    pub fn finish(
+        self,
+        recording: Recording,
+        json: bool,
+        is_refusal: impl Fn(&anyhow::Error) -> bool,
+    ) -> Result<Finished> {
+        let Self { mut simulation, mut judge, statistics, is_audited } = self;
+        let Recording { mut recorder, out, replaces } = recording;
+        let TimeSpan { start, end, .. } = simulation.program().time();
+        let frames = u32::try_from(end - simulation.frame()).unwrap_or_default();
+        let mut progress = RunProgress::new(frames, end);
         let mut report = |figures: &FrameStatistics, statistics: &RunStatistics| {
             progress.show(figures.frame, statistics);
             if json {
@@ -66,8 +97,8 @@ impl<R: Real> Run<R> {
             _ => {}
         }
         let last = simulation.frame();
-        let audit = simulation.audit().filter(|_| audit);
-        let (checks, frames, objects) = (judge.outcomes(), (start.into(), last), simulation.objects());
+        let audit = simulation.audit().filter(|_| is_audited);
+        let (checks, frames, objects) = (judge.outcomes(), (start, last), simulation.objects());
         let hash = combined_hash(&simulation);
         let flat = flat_cloths(&simulation);
         let summary =
@@ -171,7 +202,7 @@ fn advance<R: Real>(
 ) -> Result<Option<FrameStatistics>, RecordError> {
     let evaluate = |report: FrameReport, judge: &mut Judge| {
         judge.see(&report);
-        FrameStatistics::new(frame, &report.report)
+        FrameStatistics::of(&report, frame)
     };
     let Some(recorder) = recorder else {
         let report = simulation.advance(&mut StopOnSignal(&mut ()));

@@ -5,16 +5,18 @@ use std::time::Duration;
 use nucleus_core::{InvalidInput, StepReport};
 use nucleus_graph::FrameReport;
 use nucleus_graph::checks::measured_gap;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The figures of one frame, as a cache stores them and `--json` prints them.
 ///
-/// Older caches hold them under the names in `alias`.
+/// Older caches hold them under the names in `alias`. JSON has no NaN: a figure that is not finite is written as `null`.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct FrameStatistics {
     pub frame: i32,
     /// See [`StepReport`] for this field and the following ones.
+    #[serde(deserialize_with = "null_as_nan")]
     pub max_strain: f64,
+    #[serde(deserialize_with = "null_as_nan")]
     pub strain_99: f64,
     /// At most 1, see [`measured_gap`]. `None` if no collider is near: JSON has no infinity.
     pub min_gap: Option<f64>,
@@ -38,7 +40,7 @@ pub struct FrameStatistics {
     #[serde(default, skip_serializing_if = "is_zero")]
     pub broken_links: u64,
     /// Largest error of a weld, in metres.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_zero", deserialize_with = "null_as_nan")]
     pub max_weld_gap: f64,
     /// Particles of objects in which they are born and die.
     #[serde(default)]
@@ -47,9 +49,10 @@ pub struct FrameStatistics {
     #[serde(default)]
     pub births_refused: u64,
     /// Mean excess of density of liquids.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "null_as_nan")]
     pub density_error: f64,
     /// In joules.
+    #[serde(deserialize_with = "null_as_nan")]
     pub kinetic_energy: f64,
     pub finite: bool,
     /// Input values that were not usable and were replaced.
@@ -57,6 +60,14 @@ pub struct FrameStatistics {
     pub sanitized: u64,
     #[serde(skip)]
     pub first_sanitized: Option<InvalidInput>,
+    /// Penetrations that the audit found in the frame; `None` without an audit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub passed_through: Option<u64>,
+}
+
+/// A figure that was not finite when it was written is NaN.
+fn null_as_nan<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
 /// Whether a figure is zero.
@@ -65,7 +76,12 @@ fn is_zero<T: Default + PartialEq>(figure: &T) -> bool {
 }
 
 impl FrameStatistics {
-    /// The figures of a frame from the solver's report.
+    /// The figures of a frame from its report.
+    pub fn of(report: &FrameReport, frame: i32) -> Self {
+        Self { passed_through: report.passed_through, ..Self::new(frame, &report.report) }
+    }
+
+    /// The figures of a frame from the solver's report, without an audit.
     pub fn new(frame: i32, report: &StepReport) -> Self {
         let StepReport {
             max_strain,
@@ -113,6 +129,7 @@ impl FrameStatistics {
             finite,
             sanitized: sanitized.count,
             first_sanitized: sanitized.first,
+            passed_through: None,
         }
     }
 
@@ -138,7 +155,7 @@ impl FrameStatistics {
             finite: self.finite,
             ..StepReport::default()
         };
-        FrameReport { frame: self.frame.into(), report, passed_through: None }
+        FrameReport { frame: self.frame.into(), report, passed_through: self.passed_through }
     }
 }
 
@@ -173,6 +190,8 @@ pub struct RunStatistics {
     pub sanitized: u64,
     /// The first of them, and its frame.
     pub first_sanitized: Option<(InvalidInput, i32)>,
+    /// Penetrations that an audit found in the frames before a resumed run.
+    pub passed_through_before: u64,
 }
 
 /// A count per frame.
@@ -204,11 +223,16 @@ impl RunStatistics {
         self.frames += 1;
         self.time += time;
         self.last_frame_time = time;
-        self.add_recorded(figures);
+        self.add_figures(figures);
     }
 
-    /// Adds a frame that a cache holds; it takes no time.
+    /// Adds a frame that a cache holds; it takes no time, and the audit of this process does not see it.
     pub fn add_recorded(&mut self, figures: &FrameStatistics) {
+        self.passed_through_before += figures.passed_through.unwrap_or_default();
+        self.add_figures(figures);
+    }
+
+    fn add_figures(&mut self, figures: &FrameStatistics) {
         let frame = figures.frame;
         if self.worst_strain.is_none_or(|(worst, _)| figures.max_strain > worst) {
             self.worst_strain = Some((figures.max_strain, frame));
@@ -310,6 +334,36 @@ mod tests {
         let statistics = statistics(&[inside(0), inside(4), inside(4), inside(1)]);
         assert_eq!(statistics.depenetrating, Count { total: 9, most: 4, frame: 3, end: 1 });
         assert_eq!(statistics.intersections, Count::default());
+    }
+
+    #[test]
+    fn figures_that_are_not_finite_are_read_back_as_nan() {
+        let bad = StepReport {
+            max_strain: f64::NAN,
+            strain_99: f64::INFINITY,
+            max_weld_gap: f64::NAN,
+            density_error: f64::NAN,
+            kinetic_energy: f64::INFINITY,
+            finite: false,
+            ..StepReport::default()
+        };
+        let line = serde_json::to_value(FrameStatistics::new(2, &bad)).unwrap();
+        let read: FrameStatistics = serde_json::from_value(line).unwrap();
+        let figures = [read.max_strain, read.strain_99, read.max_weld_gap, read.density_error];
+        assert!(figures.iter().all(|figure| figure.is_nan()) && read.kinetic_energy.is_nan());
+        let mut statistics = RunStatistics::default();
+        statistics.add_recorded(&read);
+        assert_eq!(statistics.not_finite, Some(2));
+    }
+
+    #[test]
+    fn findings_of_an_audit_are_read_back() {
+        let report = |passed_through| FrameReport { frame: 2, report: StepReport::default(), passed_through };
+        for passed_through in [None, Some(0), Some(3)] {
+            let line = serde_json::to_value(FrameStatistics::of(&report(passed_through), 2)).unwrap();
+            let read: FrameStatistics = serde_json::from_value(line).unwrap();
+            assert_eq!(read.report().passed_through, passed_through);
+        }
     }
 
     #[test]

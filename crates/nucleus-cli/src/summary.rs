@@ -52,7 +52,8 @@ impl Summary<'_> {
     }
 
     fn is_clean(&self) -> bool {
-        self.audit.is_none_or(|audit| audit.account().is_clean())
+        self.audit
+            .is_none_or(|audit| audit.account().is_clean() && self.statistics.passed_through_before == 0)
             && self.checks.iter().all(|check| check.passed || !self.is_evaluated(check))
             && self.unresolved_contact().is_empty()
     }
@@ -109,7 +110,9 @@ impl Summary<'_> {
         for outcome in self.checks {
             writeln!(text, "{}", check_line(outcome, self.is_evaluated(outcome)))?;
         }
-        self.audit.into_iter().for_each(|audit| text += &audit_lines(audit));
+        self.audit
+            .into_iter()
+            .for_each(|audit| text += &audit_lines(audit, statistics.passed_through_before));
         let tolerated = warnings::tolerated(statistics, self.checks);
         for line in
             tolerated.into_iter().chain(self.unresolved_contact()).chain(self.warning()).chain(self.hint())
@@ -195,7 +198,7 @@ impl Summary<'_> {
             "sanitized": statistics.sanitized,
             "first_sanitized": statistics.first_sanitized.map(|(input, _)| sanitized(input, self.objects)),
             "checks": checks,
-            "audit": self.audit.map(audit_json),
+            "audit": self.audit.map(|audit| audit_json(audit, statistics.passed_through_before)),
             "cache": path,
             "unfinished": self.unfinished.as_ref().map(|part| part.display().to_string()),
             "bytes": bytes,
@@ -292,8 +295,8 @@ fn check_line(outcome: &checks::Outcome, is_evaluated: bool) -> String {
 /// Findings that are listed; any further ones are only counted.
 const MAX_FINDINGS: usize = 5;
 
-/// The counts of an audit, and its first findings.
-fn audit_lines(audit: &Audit) -> String {
+/// The counts of an audit, its first findings, and the number of those before a resumed run.
+fn audit_lines(audit: &Audit, before: u64) -> String {
     let account = audit.account();
     let motions = figures::count(account.motions as usize, "step");
     let mut text = match account.is_clean() {
@@ -321,12 +324,16 @@ fn audit_lines(audit: &Audit) -> String {
         let start = figures::count(start as usize, "pair");
         text += &format!("audit: {start} of an edge and a face intersected at the start, {now} still do\n");
     }
+    if before > 0 {
+        let before = figures::count(before as usize, "finding");
+        text += &format!("audit: {before} in the frames before the run was resumed\n");
+    }
     audit.findings().take(MAX_FINDINGS).for_each(|finding| text += &format!("  {finding}\n"));
     let rest = account.found().saturating_sub(MAX_FINDINGS as u64);
     if rest > 0 { text + &format!("  and {rest} more\n") } else { text }
 }
 
-fn audit_json(audit: &Audit) -> Value {
+fn audit_json(audit: &Audit, before: u64) -> Value {
     let account = audit.account();
     json!({
         "steps": account.motions,
@@ -335,6 +342,7 @@ fn audit_json(audit: &Audit) -> Value {
         "touches": account.touches,
         "undecided": account.undecided,
         "below_ground": account.below_ground,
+        "before_resumption": before,
         "initial_intersections": account.initial_intersections,
         "remaining_initial_intersections": account.remaining_initial_intersections,
         "current_intersections": account.current_intersections,

@@ -6,23 +6,21 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo};
 use nucleus_core::Real;
-use nucleus_graph::audit::Closeness;
-use nucleus_graph::checks::{Check, Judge};
+use nucleus_graph::checks::Check;
 use nucleus_graph::compile::Program;
 
 use crate::options::Scalar;
 use crate::output::say;
 use crate::process::Outcome;
 use crate::resumed_run::ResumedRun;
-use crate::run_loop::{self, Finished};
-use crate::run_statistics::RunStatistics;
+use crate::run_loop::{Finished, Recording, RunLoop};
 use crate::{files, options, output, process, recording};
 
 /// Resumes an interrupted or killed run, with the same bits as a run that never stopped.
 ///
 /// The run starts at the last checkpoint, solves the frames recorded after it again, compares them with the cache, and
 /// continues to the last frame. The cache is replaced only when all its frames are solved again. A resumed run may itself
-/// be killed and resumed.
+/// be killed and resumed. A run with `--audit` continues with it.
 #[derive(Debug, Args)]
 pub struct Resume {
     /// The cache (.mcap), or the unfinished cache of a killed run (.mcap.part).
@@ -107,25 +105,18 @@ impl Resume {
         compared: i32,
     ) -> Result<Resumed> {
         let (start, end) = recording::frames(&program)?;
+        let needs_audit = old.is_audited() || program.checks().iter().any(Check::needs_audit);
         // Lost frames are solved again.
         let sound = old.lost().first().map_or(compared, |lost| compared.min(lost - 1));
-        let (mut simulation, copied) =
-            old.restored::<R>(&program, options::thread_count(self.threads), sound)?;
-        if program.checks().iter().any(Check::needs_audit) {
-            simulation.begin_audit(Closeness::Frames);
-        }
-        let mut judge = Judge::new(program.checks(), program.mass());
-        let mut statistics = RunStatistics::default();
-        for figures in old.figures(copied)? {
-            judge.see(&figures.report());
-            statistics.add_recorded(&figures);
-        }
+        let (simulation, copied) = old.restored::<R>(&program, options::thread_count(self.threads), sound)?;
+        let mut run = RunLoop::new(simulation, old.is_audited());
+        old.figures(copied, needs_audit)?.iter().for_each(|figures| run.add_recorded(figures));
         ensure!(
-            statistics.not_finite.is_none(),
+            run.not_finite().is_none(),
             "a position or velocity is not finite from frame {} on: give an earlier frame with `--at`",
-            statistics.not_finite.unwrap_or_default()
+            run.not_finite().unwrap_or_default()
         );
-        let run = RunInfo {
+        let info = RunInfo {
             end,
             scene_path: scene_path.display().to_string(),
             scene_text: text,
@@ -139,39 +130,26 @@ impl Resume {
         let replace = self.force || self.out.is_none();
         // The frames of the resumed cache itself are all in the new one.
         let replaces = out != old.file;
-        let objects = recording::sources(&simulation, old.cache.objects().to_vec());
+        let objects = recording::sources(&run.simulation, old.cache.objects().to_vec());
         let help = self.help(&old, copied);
         let start_is_lost = old.lost().contains(&start);
         let kept = ResumeRange { copied: if start_is_lost { start - 1 } else { copied }, compared };
-        let mut recorder = Recorder::resume(&out, replace, &run, objects, old.cache, kept)?;
+        let mut recorder = Recorder::resume(&out, replace, &info, objects, old.cache, kept)?;
         if start_is_lost {
-            recorder.record_start(simulation.state())?;
+            recorder.record_start(run.simulation.state())?;
         }
         if recorder.checkpoint_due() {
-            recorder.record_checkpoint(&simulation.save())?; // The checkpoint of the start was lost.
+            recorder.record_checkpoint(&run.simulation.save())?; // The checkpoint of the start was lost.
         }
-        let frames = end.abs_diff(copied);
-        let recorder = Some(recorder);
-        let (audit, json) = (false, self.json);
-        let run = run_loop::Run {
-            simulation,
-            recorder,
-            out,
-            replaces,
-            judge,
-            statistics,
-            start,
-            frames,
-            audit,
-            json,
-        };
+        let recording = Recording { recorder: Some(recorder), out, replaces };
         let is_refusal = |error: &anyhow::Error| {
             matches!(
                 error.downcast_ref(),
                 Some(RecordError::ReplayMismatch { .. } | RecordError::ReplayIncomplete { .. })
             )
         };
-        run.finish(is_refusal).map(Resumed::Finished).map_err(|error| match error.downcast_ref() {
+        let finished = run.finish(recording, self.json, is_refusal);
+        finished.map(Resumed::Finished).map_err(|error| match error.downcast_ref() {
             Some(RecordError::ReplayMismatch { .. }) => error.context(help),
             _ => error,
         })

@@ -3,15 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use clap::Args;
 use nucleus_cache::TextureCoordinates;
 use nucleus_core::Real;
 use nucleus_graph::Simulation;
-use nucleus_graph::audit::Closeness;
-use nucleus_graph::checks::{Check, Judge};
-use nucleus_graph::compile::{Program, compile};
-use nucleus_graph::scene::{Assignment, Diagnostic, Scene};
+use nucleus_graph::compile::Program;
+use nucleus_graph::scene::{Assignment, Scene};
 use nucleus_measure::trade::Setting;
 
 use super::import;
@@ -20,9 +18,8 @@ use crate::options::{self, Channels, FrameRange, Record, Scalar};
 use crate::output::say;
 use crate::process::Outcome;
 use crate::recording::{self, RecordOptions};
-use crate::run_loop::{self, Finished};
-use crate::run_statistics::RunStatistics;
-use crate::{files, hanging, process, quality};
+use crate::run_loop::{Finished, Recording, RunLoop};
+use crate::{diagnostics, files, hanging, process, quality};
 
 /// Default number of frames from one checkpoint to the next: two seconds of film. A checkpoint takes about as many bytes
 /// as twenty frames.
@@ -172,14 +169,9 @@ impl Run {
         (facts, coordinates): (BTreeMap<String, String>, BTreeMap<String, TextureCoordinates>),
         (out, text): (PathBuf, &str),
     ) -> Result<Option<Finished>> {
-        let (start, end) = recording::frames(program)?;
-        let mut simulation: Simulation<R> = Simulation::new(program, options::thread_count(self.threads));
-        if self.audit {
-            simulation.begin_audit(Closeness::Steps);
-        } else if program.checks().iter().any(Check::needs_audit) {
-            simulation.begin_audit(Closeness::Frames);
-        }
-        let judge = Judge::new(program.checks(), program.mass());
+        recording::frames(program)?;
+        let simulation: Simulation<R> = Simulation::new(program, options::thread_count(self.threads));
+        let run = RunLoop::new(simulation, self.audit);
         let record = self.record.unwrap_or_default();
         let channels = record.channels();
         let options = RecordOptions {
@@ -191,28 +183,17 @@ impl Run {
             texture_coordinates: coordinates,
             facts,
         };
-        let recorder = recording::begin(&simulation, options, &out, (&self.scene, text))?;
-        let (statistics, frames) = (RunStatistics::default(), end.abs_diff(start));
-        let (audit, json) = (self.audit, self.json);
-        let replaces = self.force;
-        let run = run_loop::Run {
-            simulation,
-            recorder,
-            out,
-            replaces,
-            judge,
-            statistics,
-            start,
-            frames,
-            audit,
-            json,
-        };
-        run.finish(|_| false).map(Some)
+        let recorder = recording::begin(&run.simulation, options, &out, (&self.scene, text))?;
+        let recording = Recording { recorder, out, replaces: self.force };
+        run.finish(recording, self.json, |_| false).map(Some)
     }
 
     /// Facts about the run. `read` is the program before any change of its initial state.
     fn facts(&self, setting: Option<Setting>, read: &Program) -> Result<BTreeMap<String, String>> {
         let mut facts = recording::facts(self.from.as_ref(), setting, self.scalar, read)?;
+        if self.audit {
+            facts.insert(recording::AUDIT.to_owned(), "every step".to_owned());
+        }
         facts.extend(self.seed.map(|seed| (recording::SEED.to_owned(), seed.to_string())));
         if !self.set.is_empty() {
             let set: Vec<String> = self.set.iter().map(Assignment::to_string).collect();
@@ -231,10 +212,7 @@ impl Run {
     fn program_of(&self, scene: &Scene, wanted: f64) -> Result<(Program, Setting)> {
         let (scene, said, setting) = quality::scene_at(scene, &self.scene.display().to_string(), wanted)?;
         say!("{said}");
-        let first =
-            |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
-        let program = compile(&scene)
-            .map_err(|found| anyhow!("the scene does not compile at this setting: {}", first(found)))?;
+        let program = diagnostics::compile_changed(&scene, "the scene does not compile at this setting")?;
         Ok((program, setting))
     }
 }
@@ -242,8 +220,6 @@ impl Run {
 /// The scene with displaced start positions, and its program.
 fn displaced(scene: Scene, program: &Program, seed: u32) -> Result<(Scene, Program)> {
     let scene = nucleus_wedge::seed::displaced(scene, program, seed);
-    let first = |found: Vec<Diagnostic>| found.into_iter().map(|one| one.message).next().unwrap_or_default();
-    let program = compile(&scene)
-        .map_err(|found| anyhow!("the scene does not compile with displaced points: {}", first(found)))?;
+    let program = diagnostics::compile_changed(&scene, "the scene does not compile with displaced points")?;
     Ok((scene, program))
 }

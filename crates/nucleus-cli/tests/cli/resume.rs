@@ -194,6 +194,44 @@ fn a_cache_that_cannot_be_resumed_is_refused_with_advice() {
     assert_refused(&resume(path, &["--to", "5"]), "drop the later frames with `--at`");
 }
 
+/// Writes a scene of five frames in which a ball is driven through a held sheet, and runs it.
+fn penetrated(folder: &Path, checks: &str, arguments: &[&str]) -> Output {
+    scene(folder, 5, checks);
+    let path = folder.join("drape.ron");
+    let text = fs::read_to_string(&path).unwrap();
+    let text = text.replace("radius: 20", "radius: 20, translateY: keys([(1, 0), (5, 60)])");
+    let held = r#""k": dynamicConstraint(constraintType: transform, components: ["cloth1.vtx[0:23]", "cloth1.vtx[25:48]"]),
+        "sheet""#;
+    fs::write(&path, text.replacen(r#""sheet""#, held, 1)).unwrap();
+    nucleus(folder, &[&["run", "drape.ron", "--force", "-o", "x.mcap"], arguments].concat())
+}
+
+#[test]
+fn a_check_of_intersections_that_failed_before_the_run_was_resumed_fails_after_it_too() {
+    let folder = folder();
+    let failed = "check noSelfIntersection: FAILED";
+    let output = penetrated(folder.path(), "noSelfIntersection", &[]);
+    assert!(stdout(&output).contains(failed), "{}", stdout(&output));
+    let output = resume(folder.path(), &["--to", "6"]);
+    assert!(stdout(&output).contains(failed), "{}", stdout(&output));
+    assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
+fn an_audited_run_is_resumed_with_its_audit_and_the_findings_of_earlier_frames() {
+    let folder = folder();
+    let output = penetrated(folder.path(), "maxUnresolved(pairs: 100000)", &["--audit"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+    let output = resume(folder.path(), &["--to", "6"]);
+    assert!(stdout(&output).contains("audit of "), "{}", stdout(&output));
+    assert!(stdout(&output).contains(" in the frames before the run was resumed\n"), "{}", stdout(&output));
+    assert_eq!(output.status.code(), Some(1));
+    // A run without an audit is not audited when it is resumed.
+    penetrated(folder.path(), "maxUnresolved(pairs: 100000)", &[]);
+    let output = resume(folder.path(), &["--to", "6"]);
+    assert!(!stdout(&output).contains("audit"), "{}", stdout(&output));
+}
+
 #[test]
 fn info_lists_the_checkpoints() {
     let folder = folder();
