@@ -14,6 +14,7 @@ use crate::paint::Statements;
 
 use super::compiler::Compiler;
 use super::program::EvaluationInterval;
+use super::sources::Emitter;
 
 /// The variables: those that may be assigned at birth come first, of them those at run time.
 pub(super) const NAMES: [&str; 13] =
@@ -61,6 +62,12 @@ fn randoms(id: u64, frame: f64, seed: u64) -> [f64; 3] {
     [0, 1, 2].map(|k| unit_random([id, frame.to_bits() ^ (seed << 2 | k)]))
 }
 
+/// The key of a particle at birth: its number among those of the emitter at a place among those of its object.
+fn key_at_birth(place: u64, number: u64) -> u64 {
+    // Numbers of one emitter stay far below 2^48.
+    number ^ place << 48
+}
+
 impl EvaluationInterval<'_> {
     /// The statements of an object, if it has any. They were checked when the scene was compiled.
     fn statements(&self, node: NodeId, key: &Key<String>, writable: usize) -> Option<Statements> {
@@ -68,18 +75,20 @@ impl EvaluationInterval<'_> {
         if text.is_empty() { None } else { Statements::parse(&text, &NAMES, writable).ok() }
     }
 
-    /// Runs the expression at birth for the births of an object; `first` is the number of the first among all of its
-    /// emitter. Returns the number of particles for which it gave an invalid result.
-    pub(super) fn create(&self, node: NodeId, first: u64, births: &mut [Birth]) -> u64 {
+    /// Runs the expression at birth for births of an emitter; `numbers` are their numbers among all of it. Returns the
+    /// number of particles for which it gave an invalid result.
+    pub(super) fn create(&self, emitter: &Emitter, numbers: &[u64], births: &mut [Birth]) -> u64 {
+        let node = emitter.particles;
         let Some(statements) = self.statements(node, &n_particle::CREATION_EXPRESSION, WRITABLE[1]) else {
             return 0;
         };
         let mut invalid = 0;
         let seed = self.to.get(node, &particle::SEED) as u64;
-        for (birth, id) in births.iter_mut().zip(first..) {
+        for (birth, &number) in births.iter_mut().zip(numbers) {
             let frame = self.from.frame() + (self.to.frame() - self.from.frame()) * birth.time;
-            let mut values =
-                self.values([birth.velocity, birth.position], birth.lifespan, (0.0, id, frame), seed);
+            let randoms = randoms(key_at_birth(emitter.place, number), frame, seed);
+            let motion = [birth.velocity, birth.position];
+            let mut values = self.values(motion, birth.lifespan, (0.0, number, frame), randoms);
             statements.run(&mut values);
             let [velocity, place] = [0, 4].map(|at| self.in_metres(&values[at..at + 3]));
             invalid += u64::from(velocity.is_none() || place.is_none() || values[3].is_nan());
@@ -126,7 +135,8 @@ impl EvaluationInterval<'_> {
         let seed = self.to.get(node, &particle::SEED) as u64;
         for (place, &ParticleAge { id, age, lifespan }) in ages.iter().enumerate() {
             let motion = [fast[place], places[place]].map(|v| Vector3::from(v.map(f64::from)));
-            let before = self.values(motion, lifespan, (age, id, self.from.frame()), seed);
+            let frame = self.from.frame();
+            let before = self.values(motion, lifespan, (age, id, frame), randoms(id, frame, seed));
             let mut values = before;
             statements.run(&mut values);
             let changed = values[..3] != before[..3];
@@ -146,10 +156,9 @@ impl EvaluationInterval<'_> {
         motion: [Vector3<f64>; 2],
         lifespan: f64,
         (age, id, frame): (f64, u64, f64),
-        seed: u64,
+        [a, b, c]: [f64; 3],
     ) -> [f64; NAMES.len()] {
         let [v, x] = motion.map(|v| v * self.nucleus.units.per_metre());
-        let [a, b, c] = randoms(id, frame, seed);
         let frames = self.to.frame() - self.from.frame();
         let per_frame = if frames > 0.0 { self.seconds / frames } else { 0.0 };
         let time = (frame - self.nucleus.start() as f64) * per_frame;

@@ -359,3 +359,38 @@ fn attributes_that_another_one_switches_off_are_warned_of() {
     let classic = cloth("resistanceModel: classic, maxCollisionIterations: 8", "maxIterations: 50");
     assert_eq!(warnings(&classic, ""), Vec::<String>::new());
 }
+
+#[test]
+fn expressions_at_birth_give_particles_of_two_emitters_different_random_numbers() {
+    let nodes = r#""n": nucleus(), "q": nParticle(creationExpression: "vx = rand; lifespan = id"),
+        "e": pointEmitter(target: "q", emitterType: omni, rate: 240, speed: 0),
+        "f": pointEmitter(target: "q", emitterType: omni, rate: 240, speed: 0)"#;
+    let births = program(&of_nodes(nodes, "")).first_input().births;
+    assert_eq!(births.len(), 20);
+    for pair in births.chunks(2) {
+        assert_eq!((pair[0].time, pair[0].lifespan), (pair[1].time, pair[1].lifespan), "both emit at once");
+        assert!(pair[0].velocity.x != pair[1].velocity.x, "{pair:?}");
+    }
+}
+
+#[test]
+fn the_number_of_a_particle_at_birth_is_that_of_its_draw_where_a_rate_map_leaves_others_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().expect("a header").write_image_data(&[0, 255]).expect("pixels");
+    std::fs::write(folder.path().join("rate.png"), bytes).expect("written");
+    let nodes = r#""n": nucleus(), "q": nParticle(creationExpression: "lifespan = id"), "p": polyPlane(),
+        "e": pointEmitter(target: "q", emitterType: surface, parent: "p", rate: 2400, enableTextureRate: true,
+        rateMap: texture("rate.png"))"#;
+    let path = folder.path().join("scene.ron");
+    let (scene, _) = read_scene_text(&of_nodes(nodes, ""), &path).expect("it is read");
+    let births = compile(&scene).expect("it compiles").first_input().births;
+    assert!((20..=80).contains(&births.len()), "about half of a hundred draws: {}", births.len());
+    for birth in births {
+        // The k-th of a hundred is born after k hundredths of the frame.
+        let draw = birth.time * 100.0 - 1.0;
+        assert!((draw - birth.lifespan).abs() < 1e-9, "{draw} is number {}", birth.lifespan);
+    }
+}

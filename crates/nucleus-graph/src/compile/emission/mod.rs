@@ -215,15 +215,18 @@ impl EvaluationInterval<'_> {
         // An object has no room for more.
         let has_room = self.to.get(emitter.particles, &particle::MAX_COUNT) != 0;
         let room = if has_room { self.nucleus.room_of(emitter.cloth) } else { 0 };
-        let earlier = births.len();
+        let (earlier, mut numbers) = (births.len(), Vec::new());
         let made = (count as u64).min(room);
         kept.births_refused = kept.births_refused.saturating_add(count as u64 - made);
         for k in 0..made {
             let time = time_of(k as f64 + 1.0 - remainder, rates);
             let random = Random::new([flight.seed, emitter.place, first + k]);
-            births.extend(flight.birth(emitter.cloth, time, &launch, random, &lifespan));
+            let birth = flight.birth(emitter.cloth, time, &launch, random, &lifespan);
+            // A rate map leaves out draws; the numbers of the others stay.
+            numbers.extend(birth.as_ref().map(|_| first + k));
+            births.extend(birth);
         }
-        let invalid = self.create(emitter.particles, first, &mut births[earlier..]);
+        let invalid = self.create(emitter, &numbers, &mut births[earlier..]);
         add_invalid(&mut kept.invalid_results, invalid, InvalidInput::CreationExpression(emitter.cloth));
     }
 
