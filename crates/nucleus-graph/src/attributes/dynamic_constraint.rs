@@ -25,6 +25,9 @@ const CONSTRAINT_TYPES: &[(i32, &str)] = &[
     (9, "collisionExclusion"),
 ];
 
+/// `restLengthMethod: constant`.
+pub const CONSTANT_REST_LENGTH: Choice = Choice(1);
+
 node_table! {
     /// A dynamic constraint between components of objects, or between components and its own transform.
     DYNAMIC_CONSTRAINT = "dynamicConstraint", inherits Some(&TRANSFORM), hides [];

@@ -4,6 +4,7 @@
 //! |----------------------------------------------|--------------------------------|
 //! | what a row holds                             | [`Attribute`]                  |
 //! | the types of values                          | [`Value`], [`Kind`]            |
+//! | the value of a ramp at a position            | [`Ramp`]                       |
 //! | how a value is read as a Rust type           | [`Key`]                        |
 //! | how node types inherit rows                  | [`NodeType`]                   |
 //! | which node types exist                       | [`node_types`]                 |
@@ -28,6 +29,7 @@ mod node_type;
 pub mod nucleus;
 pub mod particle;
 pub mod point_emitter;
+mod ramp;
 mod row;
 mod scene_nodes;
 mod value;
@@ -41,6 +43,7 @@ pub use fields::{
 pub use key::{FromValue, Key, Plugged};
 pub use kind::{Data, Kind};
 pub use node_type::NodeType;
+pub use ramp::Ramp;
 pub use row::{Attribute, Effect, Range};
 pub use scene_nodes::{
     camera, mesh, poly_cube, poly_cylinder, poly_plane, poly_sphere, surface_shape, time, transform,

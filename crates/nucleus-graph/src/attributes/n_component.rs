@@ -6,6 +6,21 @@ use super::n_base::MAP_TYPES;
 use super::node_type::node_table;
 use super::value::Choice;
 
+/// `componentType: point`.
+pub const POINT: Choice = Choice(2);
+/// `componentType: edge`.
+pub const EDGE: Choice = Choice(3);
+/// `componentType: face`.
+pub const FACE: Choice = Choice(4);
+/// `componentType: object`.
+pub const OBJECT: Choice = Choice(6);
+/// `elements: fromIndiceList`.
+pub const LISTED: Choice = Choice(0);
+/// `elements: borders`.
+pub const BORDERS: Choice = Choice(1);
+/// `elements: all`.
+pub const ALL: Choice = Choice(2);
+
 node_table! {
     /// A component of an object that a constraint acts on.
     N_COMPONENT = "nComponent", inherits None, hides [];

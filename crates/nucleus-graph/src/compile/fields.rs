@@ -8,13 +8,12 @@ use nucleus_core::{ClothId, Field, FieldKind, Noise, Reach, Volume, VolumeAxis, 
 
 use crate::animation::{Affine, sin_cos_degrees};
 use crate::attributes::{
-    Choice, Key, NodeType, air_field, drag_field, field, gravity_field, newton_field, particle, radial_field,
-    turbulence_field, uniform_field, volume_axis_field, vortex_field,
+    Choice, Key, NodeType, Ramp, air_field, drag_field, field, gravity_field, newton_field, particle,
+    radial_field, turbulence_field, uniform_field, volume_axis_field, vortex_field,
 };
 use crate::graph::{EvalContext, NodeId};
 
 use super::compiler::Compiler;
-use super::force_fields::ramp_at;
 use super::program::EvaluationInterval;
 use super::sources::FieldSource;
 
@@ -179,6 +178,8 @@ impl FieldNode<'_> {
         let bounded = self.to.get(self.id, &field::USE_MAX_DISTANCE);
         let distance = self.number(&field::MAX_DISTANCE).max(0.0) * metre;
         let curve = self.to.get(self.id, &field::FALLOFF_CURVE);
+        let curve =
+            Some(curve).filter(|points| bounded && !points.is_empty()).map(|points| Ramp::new(&points));
         let is_radial = node_type.is_a(&radial_field::RADIAL_FIELD);
         // A radial field of type 0 fades out towards its largest distance, one of type 1 stops there.
         let fading = match is_radial && bounded {
@@ -194,7 +195,7 @@ impl FieldNode<'_> {
         let at = |k: usize| {
             let share = k as f64 / (Reach::SAMPLES - 1) as f64;
             let faded = if is_inverted { share.powf(attenuation) } else { 1.0 - fading * share };
-            if curve.is_empty() || !bounded { faded } else { faded * ramp_at(&curve, share) }
+            curve.as_ref().map_or(faded, |curve| faded * curve.value_at(share))
         };
         Reach {
             center: self.placement.offset * metre,
@@ -231,6 +232,6 @@ impl FieldNode<'_> {
 }
 
 /// The vector of unit length, or zero for the zero vector.
-fn unit(vector: Vector3<f64>) -> Vector3<f64> {
+pub(super) fn unit(vector: Vector3<f64>) -> Vector3<f64> {
     vector.try_normalize(0.0).unwrap_or_default()
 }

@@ -2,14 +2,11 @@
 
 use nucleus_core::{FieldSide, ForceField, PointField, WindField};
 
-use crate::attributes::{Choice, Key, RampPoint, n_base};
+use crate::attributes::{Choice, Key, Ramp, n_base};
 use crate::graph::NodeId;
 
 use super::program::EvaluationInterval;
 
-/// Interpolations of ramps.
-const STEP: Choice = Choice(0);
-const LINEAR: Choice = Choice(1);
 /// m/s² for a `fieldMagnitude` of 1.
 pub(super) const FIELD_ACCELERATION: f64 = 10.0;
 
@@ -28,7 +25,7 @@ impl EvaluationInterval<'_> {
             side,
             magnitude: self.to.get(node, &n_base::FIELD_MAGNITUDE) * FIELD_ACCELERATION * scale,
             distance: self.nucleus.units.length(self.to.get(node, &n_base::FIELD_DISTANCE)),
-            falloff: samples(&ramp),
+            falloff: Ramp::new(&ramp).samples(),
         })
     }
 
@@ -47,7 +44,7 @@ impl EvaluationInterval<'_> {
             self_attract: number(&n_base::SELF_ATTRACT) * FIELD_ACCELERATION * scale,
             radius: thickness,
             distance: units.length(number(&n_base::POINT_FIELD_DISTANCE) * scale),
-            falloff: samples(&self.to.get(node, &n_base::POINT_FIELD_DROPOFF)),
+            falloff: Ramp::new(&self.to.get(node, &n_base::POINT_FIELD_DROPOFF)).samples(),
         })
     }
 
@@ -62,28 +59,4 @@ impl EvaluationInterval<'_> {
             push_vorticity: number(&n_base::AIR_PUSH_VORTICITY),
         }
     }
-}
-
-/// A ramp at evenly spaced positions.
-fn samples(ramp: &[RampPoint]) -> [f64; ForceField::SAMPLES] {
-    std::array::from_fn(|k| ramp_at(ramp, k as f64 / (ForceField::SAMPLES - 1) as f64))
-}
-
-/// A ramp at a position: before its first point and behind its last it is constant.
-pub(super) fn ramp_at(ramp: &[RampPoint], position: f64) -> f64 {
-    let mut points: Vec<RampPoint> = ramp.to_vec();
-    points.sort_by(|a, b| a.position.total_cmp(&b.position));
-    let next = points.partition_point(|point| point.position <= position);
-    let (Some(a), b) = (points.get(next.wrapping_sub(1)).or(points.first()), points.get(next)) else {
-        return 0.0;
-    };
-    let Some(b) = b.filter(|b| b.position > a.position && position > a.position) else { return a.value };
-    let share = (position - a.position) / (b.position - a.position);
-    let share = match a.interpolation {
-        STEP => 0.0,
-        LINEAR => share,
-        // Smooth and spline: no overshoot.
-        _ => share * share * (3.0 - 2.0 * share),
-    };
-    a.value + (b.value - a.value) * share
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use nalgebra::Vector3;
 use nucleus_core::{ClothId, CollisionEvent, ParticleRamp, RampInput, RampTarget};
 
-use crate::attributes::{Choice, ColorPoint, Key, Painting, RampPoint, Value, n_particle, particle};
+use crate::attributes::{Choice, ColorPoint, Key, Painting, Ramp, RampPoint, Value, n_particle, particle};
 use crate::diagnostic::nearest;
 use crate::graph::{Graph, NodeId};
 use crate::memory;
@@ -13,7 +13,6 @@ use crate::paint::{Expression, Point, read_numbers};
 
 use super::compiler::Compiler;
 use super::emission::Lifespan;
-use super::force_fields::ramp_at;
 
 /// Samples of a ramp.
 const SAMPLES: usize = 129;
@@ -158,8 +157,8 @@ impl Compiler<'_> {
         };
         let input = ramp_input(self.start.get(node, keys.input));
         let randomize = keys.randomize.map_or(0.0, |key| self.start.get(node, key));
-        let points = self.start.get(node, keys.ramp);
-        let at = |k: usize| base * ramp_at(&points, k as f64 / (SAMPLES - 1) as f64);
+        let ramp = Ramp::new(&self.start.get(node, keys.ramp));
+        let at = |k: usize| base * ramp.value_at(k as f64 / (SAMPLES - 1) as f64);
         // Without an input a factor other than 1 is a ramp of one sample.
         let (input, samples) = match input {
             RampInput::Off if base == 1.0 => (input, vec![1.0]),
@@ -224,7 +223,7 @@ impl Compiler<'_> {
                     interpolation: point.interpolation,
                 })
                 .collect();
-            let samples = (0..SAMPLES).map(|k| ramp_at(&own, k as f64 / (SAMPLES - 1) as f64)).collect();
+            let samples = Ramp::new(&own).samples::<SAMPLES>().to_vec();
             ParticleRamp { target: target(channel), input, input_max, samples, randomize }
         };
         (0..3).map(channel).collect()

@@ -6,9 +6,10 @@ use nucleus_core::{ClothId, Link, LinkSide, PointId};
 
 use crate::attributes::dynamic_constraint as con;
 
+use super::bvh::{Bounds, Bvh};
 use super::forming::{Forming, Place, Point};
 use super::member::{Member, MemberObject};
-use super::near::{Foot, Nearby, foot};
+use super::near::{Foot, foot};
 
 impl Forming<'_> {
     /// The welds of a tearable surface, each for half of its edge.
@@ -34,9 +35,10 @@ impl Forming<'_> {
         let mut joined = BTreeSet::new();
         let mut welds = BTreeMap::new();
         for (a, from) in self.source.members.iter().enumerate() {
+            let lengths = from.border_lengths(self.places);
             for (b, to) in self.source.members.iter().enumerate().filter(|(b, _)| within || a != *b) {
                 let edges = self.all_corners(to);
-                let nearby = Nearby::new(edges.iter().map(Vec::as_slice));
+                let tree = Bvh::new(edges.iter().map(Vec::as_slice));
                 let along = (a == b).then(|| Chains::new(to, &edges));
                 for (point, element) in from.points() {
                     let at = self.places.point(from.object, point);
@@ -46,8 +48,7 @@ impl Forming<'_> {
                         true => f64::INFINITY,
                         false => (foot(&edges[edge as usize], at).place - at).norm(),
                     };
-                    let found = nearby.nearest(at.x, of).filter(|(distance, _)| *distance <= reach);
-                    let Some((_, edge)) = found else { continue };
+                    let Some((_, edge)) = tree.nearest(&Bounds::of(&[at]), reach, of) else { continue };
                     let on = snapped(foot(&edges[edge as usize], at), &edges[edge as usize]);
                     let to_point = to.elements.face(edge as usize)[on.corners[0]];
                     if on.weights[0] == 1.0 {
@@ -61,7 +62,7 @@ impl Forming<'_> {
                     let to_place = self.place(to, edge, &on);
                     let link = self.link([(from, from_place), (to, to_place)], None);
                     welds.insert((a, point), links.len() as u32);
-                    links.push(Link { length: from.border_length(point, self.places), ..link });
+                    links.push(Link { length: lengths.get(&point).copied().unwrap_or_default(), ..link });
                 }
             }
         }
@@ -111,15 +112,14 @@ impl<'a> Chains<'a> {
     }
 
     /// The edges that a walk along the border from a point reaches within a length.
-    fn near(&self, point: u32, length: f64) -> Vec<u32> {
-        let mut found: Vec<u32> = Vec::new();
+    fn near(&self, point: u32, length: f64) -> BTreeSet<u32> {
+        let mut found = BTreeSet::new();
         let mut open = vec![(point, 0.0)];
         while let Some((point, walked)) = open.pop() {
             for &edge in self.of_point.get(&point).into_iter().flatten() {
-                if found.contains(&edge) {
+                if !found.insert(edge) {
                     continue;
                 }
-                found.push(edge);
                 let reached = walked + self.lengths[edge as usize];
                 if reached <= length {
                     let ends = self.member.elements.face(edge as usize).iter();

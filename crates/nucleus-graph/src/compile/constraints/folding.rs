@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 use nucleus_core::{Link, LinkSide, PointId, fold_link};
 
+use super::bvh::{Bounds, Bvh};
 use super::forming::Forming;
 use super::member::{Member, MemberObject};
 use super::near::distance;
@@ -74,7 +75,7 @@ impl Forming<'_> {
         folds
     }
 
-    /// The edges of borders that face each other within a distance: the nearest of another border to each.
+    /// The edges of borders that face each other within a distance: the nearest of another border to each, by their middles.
     pub(super) fn border_pairs(&self, within: bool, reach: f64) -> Vec<[MemberEdge; 2]> {
         let members = &self.source.members;
         let ends = |(member, edge): MemberEdge| -> [Point; 2] {
@@ -94,16 +95,24 @@ impl Forming<'_> {
         let is_along = |edge: MemberEdge, other: MemberEdge| {
             ends(edge).iter().all(|&end| distance(&[end, end], &ends(other)) <= reach)
         };
+        let middles: Vec<Point> = all.iter().map(|&edge| middle(edge)).collect();
+        let tree = Bvh::new(middles.iter().map(std::slice::from_ref));
+        // The middle of an edge along another is within reach of it, and no farther from its middle than half its length.
+        let half = |&edge: &MemberEdge| (ends(edge)[1] - ends(edge)[0]).norm() / 2.0;
+        let farthest = (reach + all.iter().map(half).fold(0.0, f64::max)) * (1.0 + 1e-9);
         let mut pairs = Vec::new();
-        for &edge in &all {
-            let gap = |other: &MemberEdge| (middle(edge) - middle(*other)).norm();
-            let others = all.iter().filter(|other| {
+        for (&edge, &at) in all.iter().zip(&middles) {
+            let is_other = |other: MemberEdge| {
                 other.0 > edge.0
-                    || within && other.0 == edge.0 && other.1 > edge.1 && !shares_point(edge, **other)
-            });
-            let nearest = others.min_by(|a, b| gap(a).total_cmp(&gap(b)));
-            if let Some(other) = nearest.filter(|&&other| is_along(edge, other) || is_along(other, edge)) {
-                pairs.push([edge, *other]);
+                    || within && other.0 == edge.0 && other.1 > edge.1 && !shares_point(edge, other)
+            };
+            let gap = |k: u32| match is_other(all[k as usize]) {
+                true => (at - middles[k as usize]).norm(),
+                false => f64::INFINITY,
+            };
+            let nearest = tree.nearest(&Bounds::of(&[at]), farthest, gap).map(|(_, k)| all[k as usize]);
+            if let Some(other) = nearest.filter(|&other| is_along(edge, other) || is_along(other, edge)) {
+                pairs.push([edge, other]);
             }
         }
         pairs

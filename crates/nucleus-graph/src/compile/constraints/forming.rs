@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 use nucleus_core::{Link, LinkSide, PointId};
 
-use crate::attributes::{ElementKind, RampPoint, dynamic_constraint as con};
-use crate::compile::force_fields::ramp_at;
+use crate::attributes::{ElementKind, Ramp, dynamic_constraint as con};
 
+use super::bvh::{Bounds, Bvh};
 use super::kinds::{self, Values};
 use super::member::{ConstraintSource, Member, MemberObject, Places};
-use super::near::{Foot, Nearby, barycentric, distance, foot};
+use super::near::{Foot, barycentric, distance, foot};
 use super::sheet::Sheet;
 
 pub(super) type Point = Vector3<f64>;
@@ -19,8 +19,6 @@ const ALL_TO_ALL: i32 = 1;
 /// `connectionMethod`.
 const IN_ORDER: i32 = 0;
 const MAX_DISTANCE: i32 = 1;
-/// `restLengthMethod: constant`.
-const CONSTANT: i32 = 1;
 
 /// What forming links needs of a constraint.
 pub(super) struct Forming<'a> {
@@ -61,7 +59,7 @@ impl Forming<'_> {
             kinds::TEARABLE => self.seams(),
             _ => self.pairs(),
         };
-        let constant = self.values.choice(&con::REST_LENGTH_METHOD) == CONSTANT;
+        let constant = self.values.choice(&con::REST_LENGTH_METHOD) == con::CONSTANT_REST_LENGTH.0;
         let rest = |link: &Link| match constant && link.fold.is_none() {
             true if link.rest < 0.0 => -1.0,
             true => 1.0,
@@ -156,13 +154,12 @@ impl Forming<'_> {
     fn within_distance(&self, from: &Member, to: &Member, same: bool) -> Vec<[u32; 2]> {
         let reach = self.reach();
         let (ours, theirs) = (self.all_corners(from), self.all_corners(to));
-        let nearby = Nearby::new(theirs.iter().map(Vec::as_slice));
+        let tree = Bvh::new(theirs.iter().map(Vec::as_slice));
         let mut pairs = Vec::new();
         for (x, corners) in (0..).zip(&ours) {
-            let low = corners.iter().map(|corner| corner.x).fold(f64::INFINITY, f64::min);
-            let high = corners.iter().map(|corner| corner.x).fold(f64::NEG_INFINITY, f64::max);
-            let mut found: Vec<u32> = nearby
-                .within([low, high], reach)
+            let mut found: Vec<u32> = tree
+                .within(&Bounds::of(corners), reach)
+                .into_iter()
                 .filter(|&y| !same || x < y && !Self::touch(from, x, y))
                 .filter(|&y| distance(corners, &theirs[y as usize]) <= reach)
                 .collect();
@@ -178,7 +175,7 @@ impl Forming<'_> {
         let mut left: [Vec<u32>; 2] = [&ours, &theirs].map(|all| (0..all.len() as u32).collect());
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         while !left[0].is_empty() && !left[1].is_empty() {
-            let nearby = Nearby::new(left[1].iter().map(|&y| theirs[y as usize].as_slice()));
+            let tree = Bvh::new(left[1].iter().map(|&y| theirs[y as usize].as_slice()));
             let mut found: Vec<(f64, u32, u32)> = Vec::new();
             for &x in &left[0] {
                 let corners = &ours[x as usize];
@@ -186,17 +183,8 @@ impl Forming<'_> {
                     y if same && (x == y || Self::touch(from, x, y)) => f64::INFINITY,
                     y => distance(corners, &theirs[y as usize]),
                 };
-                let middle = corners.iter().map(|corner| corner.x).sum::<f64>() / corners.len() as f64;
-                let nearest = match corners.len() {
-                    1 => nearby.nearest(middle, of),
-                    // The distance of a wide element is not bounded by that of its middle.
-                    _ => (0..left[1].len() as u32)
-                        .map(|at| (of(at), at))
-                        .reduce(|a, b| if b.0 < a.0 { b } else { a }),
-                };
-                found.extend(
-                    nearest.filter(|(d, _)| d.is_finite()).map(|(d, at)| (d, x, left[1][at as usize])),
-                );
+                let nearest = tree.nearest(&Bounds::of(corners), f64::INFINITY, of);
+                found.extend(nearest.map(|(d, at)| (d, x, left[1][at as usize])));
             }
             found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
             let before = pairs.len();
@@ -225,24 +213,21 @@ impl Forming<'_> {
 
     /// Keeps each pair with the probability of `connectionDensity`, over its length by `connectionDensityRange`.
     fn thinned(&self, mut pairs: Vec<[u32; 2]>, [from, to]: [&Member; 2]) -> Vec<[u32; 2]> {
-        pairs.retain(|&[x, y]| {
-            self.is_dense() || self.keeps([x, y], distance(&self.corners(from, x), &self.corners(to, y)))
-        });
+        let density = self.density();
+        if !density.keeps_all() {
+            pairs.retain(|&[x, y]| {
+                density.keeps([x, y], distance(&self.corners(from, x), &self.corners(to, y)))
+            });
+        }
         pairs
     }
 
-    /// Whether all pairs are kept.
-    fn is_dense(&self) -> bool {
-        let ramp = self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE);
-        self.values.number(&con::CONNECTION_DENSITY) >= 1.0
-            && ramp.iter().all(|point: &RampPoint| point.value >= 1.0)
-    }
-
-    /// Whether a pair of elements at a distance in metres is kept.
-    fn keeps(&self, [x, y]: [u32; 2], distance: f64) -> bool {
-        let ramp = self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE);
-        let place = (distance / self.reach().max(f64::MIN_POSITIVE)).min(1.0);
-        chance(x, y) < self.values.number(&con::CONNECTION_DENSITY) * ramp_at(&ramp, place)
+    fn density(&self) -> Density {
+        Density {
+            share: self.values.number(&con::CONNECTION_DENSITY),
+            ramp: Ramp::new(&self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE)),
+            reach: self.reach().max(f64::MIN_POSITIVE),
+        }
     }
 
     /// `maxDistance` in metres.
@@ -307,7 +292,8 @@ impl Forming<'_> {
     fn to_surface(&self) -> Vec<Link> {
         let Some((surface, others)) = self.source.members.split_first() else { return Vec::new() };
         let faces = self.all_corners(surface);
-        let nearby = Nearby::new(faces.iter().map(Vec::as_slice));
+        let tree = Bvh::new(faces.iter().map(Vec::as_slice));
+        let density = self.density();
         let walks = self.values.slides() && !surface.sheet.is_empty();
         let sheet = walks.then(|| Sheet::new(surface, self.places));
         let reach = match self.values.choice(&con::CONNECTION_METHOD) {
@@ -319,8 +305,8 @@ impl Forming<'_> {
             for (point, element) in member.points() {
                 let at = self.places.point(member.object, point);
                 let of = |face: u32| (foot(&faces[face as usize], at).place - at).norm();
-                let Some((distance, face)) = nearby.nearest(at.x, of) else { continue };
-                if distance > reach || !self.keeps([element, face], distance) {
+                let Some((distance, face)) = tree.nearest(&Bounds::of(&[at]), reach, of) else { continue };
+                if !density.keeps([element, face], distance) {
                     continue;
                 }
                 let start = (surface.elements.face(face as usize), &faces[face as usize][..]);
@@ -337,6 +323,25 @@ impl Forming<'_> {
             }
         }
         links
+    }
+}
+
+/// The share of pairs that are kept: `connectionDensity`, over their distance by `connectionDensityRange`.
+struct Density {
+    share: f64,
+    ramp: Ramp,
+    /// The distance at the end of the ramp, in metres.
+    reach: f64,
+}
+
+impl Density {
+    fn keeps_all(&self) -> bool {
+        self.share >= 1.0 && self.ramp.is_at_least(1.0)
+    }
+
+    /// Whether a pair of elements at a distance in metres is kept.
+    fn keeps(&self, [x, y]: [u32; 2], distance: f64) -> bool {
+        chance(x, y) < self.share * self.ramp.value_at((distance / self.reach).min(1.0))
     }
 }
 

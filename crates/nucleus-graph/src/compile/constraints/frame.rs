@@ -20,8 +20,6 @@ use super::forming::Forming;
 use super::kinds::Values;
 use super::member::{ConstraintSource, MemberObject, Part, Places};
 
-/// `restLengthMethod: constant`.
-const CONSTANT: i32 = 1;
 /// `bendBreakAngle` of a tearable surface that keeps the bend resistance of its cloth, in degrees.
 const TEARABLE_BREAK_ANGLE: f64 = 5.0;
 
@@ -108,7 +106,7 @@ impl EvaluationInterval<'_> {
         formed: Option<Vec<Link>>,
     ) -> ConstraintFrame {
         let units = self.nucleus.units;
-        let constant = values.choice(&con::REST_LENGTH_METHOD) == CONSTANT;
+        let constant = values.choice(&con::REST_LENGTH_METHOD) == con::CONSTANT_REST_LENGTH.0;
         let is_force = source.part == Some(Part::ForceToOrigin);
         let force = values.number(&con::FORCE);
         let to_space = values.choice(&con::CONSTRAINT_RELATION) == 0;

@@ -5,9 +5,8 @@ use std::borrow::Cow;
 use nucleus_core::Falloff;
 
 use crate::attributes::{
-    Attribute, Choice, FromValue, Key, Kind, NodeType, RampPoint, Value, dynamic_constraint as con,
+    Attribute, Choice, FromValue, Key, Kind, NodeType, Ramp, RampPoint, Value, dynamic_constraint as con,
 };
-use crate::compile::force_fields::ramp_at;
 use crate::graph::{EvalContext, NodeId};
 
 /// Kinds by their number in `constraintType`.
@@ -163,9 +162,8 @@ impl<'a> Values<'a> {
             FORCE if !given => Cow::Borrowed(FALLING),
             _ => self.at.get(self.node, &con::STRENGTH_DROPOFF),
         };
-        let last = (Falloff::SAMPLES - 1) as f64;
         let distance = self.number(&con::DROPOFF) * self.number(&con::DROPOFF_DISTANCE);
-        let samples: [f64; Falloff::SAMPLES] = std::array::from_fn(|k| ramp_at(&ramp, k as f64 / last));
+        let samples: [f64; Falloff::SAMPLES] = Ramp::new(&ramp).samples();
         let is_one = samples.iter().all(|sample| *sample == 1.0);
         (!is_one).then(|| Falloff { distance: metres(distance), samples })
     }

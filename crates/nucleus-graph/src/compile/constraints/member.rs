@@ -1,5 +1,6 @@
 //! The source of a constraint's frames, and its members.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -98,13 +99,18 @@ impl Member {
         std::array::from_fn(|k| self.scalars[k] * own[k])
     }
 
-    /// Half of the length of the edges at a border point, in metres.
-    pub(crate) fn border_length(&self, point: u32, places: &Places) -> f64 {
-        let length = |edge: &[u32]| {
-            let [a, b] = [edge[0], edge[edge.len() - 1]].map(|end| places.point(self.object, end));
-            (b - a).norm() / 2.0
-        };
-        self.elements.iter().filter(|edge| edge.contains(&point)).map(length).sum()
+    /// Half of the length of the edges at each border point, in metres.
+    pub(crate) fn border_lengths(&self, places: &Places) -> BTreeMap<u32, f64> {
+        let mut lengths = BTreeMap::new();
+        for edge in self.elements.iter() {
+            let ends = [edge[0], edge[edge.len() - 1]];
+            let [a, b] = ends.map(|end| places.point(self.object, end));
+            // An edge between a point and itself counts once.
+            for end in &ends[..if ends[0] == ends[1] { 1 } else { 2 }] {
+                *lengths.entry(*end).or_default() += (b - a).norm() / 2.0;
+            }
+        }
+        lengths
     }
 }
 

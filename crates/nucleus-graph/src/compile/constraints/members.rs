@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use nucleus_core::{ClothId, ColliderId, ExcludedSide, Exclusion, Faces, MAX_EXCLUSIONS, PointId};
 
-use crate::attributes::{
-    Choice, ElementKind, dynamic_constraint as con, n_base, n_cloth, n_component, nucleus,
-};
+use crate::attributes::{ElementKind, dynamic_constraint as con, n_base, n_cloth, n_component, nucleus};
 use crate::compile::compiler::Compiler;
 use crate::compile::map_values::{MapAttributes, MapOfCloth};
 use crate::compile::program::NamedSelection;
@@ -17,9 +15,6 @@ use crate::graph::NodeId;
 use super::kinds::{self, Values};
 use super::member::{ConstraintSource, Member, MemberObject, Part};
 use super::split_mesh::Tearing;
-
-/// `componentType: object`.
-const OBJECT: Choice = Choice(6);
 
 static STRENGTH: MapAttributes = MapAttributes {
     values: &n_component::STRENGTH_PER_VERTEX,
@@ -297,7 +292,7 @@ impl Compiler<'_> {
         let mesh = graph.source(object, &n_base::INPUT_MESH).unwrap_or(object);
         let of = Selected { owner: constraint, object, mesh };
         let elements = Elements::new(&faces, points);
-        let is_whole = graph.node(component).get(&n_component::COMPONENT_TYPE) == OBJECT;
+        let is_whole = graph.node(component).get(&n_component::COMPONENT_TYPE) == n_component::OBJECT;
         let (kind, chosen) = match is_whole && is_surface && !faces.is_empty() {
             true => (ElementKind::Face, (0..faces.len() as u32).collect()),
             false => self.selected(&of, component, &elements),
@@ -328,7 +323,7 @@ impl Compiler<'_> {
         }
         // Points that were split are all of their twins.
         if let Some(tearing) = tearing.filter(|_| kind == ElementKind::Point) {
-            chosen.iter().flat_map(|&at| tearing.twins_of(at)).for_each(|twin| all.push(&[twin]));
+            tearing.twins_of(&chosen).into_iter().for_each(|twin| all.push(&[twin]));
         }
         let twins = tearing.map(|tearing| tearing.twins.clone()).unwrap_or_default();
         let number = |key| self.start.get(component, key);

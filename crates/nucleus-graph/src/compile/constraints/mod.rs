@@ -8,6 +8,7 @@
 //! | welds of tearable surfaces and of borders              | `borders.rs` |
 //! | joined edges that resist folding                      | `folding.rs` |
 //! | the closest places of elements                         | `near.rs`    |
+//! | the nearest of many elements                           | `bvh.rs`     |
 //! | the sheet on which sliding links walk                  | `sheet.rs`   |
 //! | meshes that are split where they can tear              | `tearing.rs`, `split_mesh.rs` |
 //! | the attributes of a frame; keyed `enable`              | `frame.rs`   |
@@ -16,6 +17,7 @@
 //! links of the solver, exclusions of its contact, or both.
 
 mod borders;
+mod bvh;
 mod folding;
 mod forming;
 mod frame;

@@ -1,4 +1,4 @@
-//! Closest places of elements, and the elements near a place.
+//! Closest places of elements, and their distances.
 
 use nalgebra::Vector3;
 
@@ -105,64 +105,6 @@ fn between_segments([a, b]: [Point; 2], [c, d]: [Point; 2]) -> f64 {
     if inside(s) && inside(t) { (w + u * s - v * t).norm() } else { f64::INFINITY }
 }
 
-/// Elements sorted along x, to find those near a place.
-pub(super) struct Nearby {
-    /// By their lowest x: low and high x, and the element.
-    sorted: Vec<([f64; 2], u32)>,
-    /// The largest extent along x.
-    widest: f64,
-}
-
-impl Nearby {
-    pub(super) fn new<'a>(elements: impl Iterator<Item = &'a [Point]>) -> Self {
-        let extent = |element: &[Point]| {
-            let x = element.iter().map(|corner| corner.x);
-            [x.clone().fold(f64::INFINITY, f64::min), x.fold(f64::NEG_INFINITY, f64::max)]
-        };
-        let mut sorted: Vec<([f64; 2], u32)> = elements.map(extent).zip(0..).collect();
-        sorted.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]).then(a.1.cmp(&b.1)));
-        let widest = sorted.iter().map(|([low, high], _)| high - low).fold(0.0, f64::max);
-        Self { sorted, widest }
-    }
-
-    /// The elements that may be within a distance of the range from `low` to `high` along x, in order of x.
-    pub(super) fn within(&self, [low, high]: [f64; 2], reach: f64) -> impl Iterator<Item = u32> + '_ {
-        let first = self.sorted.partition_point(|(x, _)| x[0] < low - reach - self.widest);
-        self.sorted[first..].iter().take_while(move |(x, _)| x[0] <= high + reach).map(|(_, at)| *at)
-    }
-
-    /// The element for which `distance` is smallest, and that distance; of equals, the first. `distance` is at least the
-    /// distance along x from `x`.
-    pub(super) fn nearest(&self, x: f64, mut distance: impl FnMut(u32) -> f64) -> Option<(f64, u32)> {
-        let middle = self.sorted.partition_point(|(range, _)| range[0] < x);
-        let mut best: Option<(f64, u32)> = None;
-        let mut consider = |at: u32, best: &mut Option<(f64, u32)>| {
-            let found = (distance(at), at);
-            if best.is_none_or(|best| found.0 < best.0 || found.0 == best.0 && found.1 < best.1) {
-                *best = Some(found);
-            }
-        };
-        let (mut below, mut above) = (middle, middle);
-        loop {
-            let reach = best.map_or(f64::INFINITY, |(distance, _)| distance);
-            let next_below = below.checked_sub(1).filter(|&k| self.sorted[k].0[0] >= x - reach - self.widest);
-            let next_above =
-                Some(above).filter(|&k| self.sorted.get(k).is_some_and(|(r, _)| r[0] <= x + reach));
-            if next_below.is_none() && next_above.is_none() {
-                return best;
-            }
-            if let Some(k) = next_above {
-                consider(self.sorted[k].1, &mut best);
-                above += 1;
-            }
-            if let Some(k) = next_below {
-                consider(self.sorted[k].1, &mut best);
-                below -= 1;
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,16 +116,6 @@ mod tests {
     }
 
     proptest! {
-        #[test]
-        fn the_nearest_element_is_the_one_that_trying_all_finds(all in triangles(), to in proptest::array::uniform3(-3.0..3.0f64)) {
-            let to = Point::from(to);
-            let of = |at: u32| (foot(&all[at as usize], to).place - to).norm();
-            let nearby = Nearby::new(all.iter().map(|triangle| triangle.as_slice()));
-            let (found, _) = nearby.nearest(to.x, of).expect("there is one");
-            let least = (0..all.len() as u32).map(of).fold(f64::INFINITY, f64::min);
-            prop_assert_eq!(found, least);
-        }
-
         #[test]
         fn a_foot_is_no_farther_than_any_place_of_the_element(
             all in triangles(), to in proptest::array::uniform3(-3.0..3.0f64), (u, v) in (0.0..1.0f64, 0.0..1.0f64),

@@ -147,9 +147,15 @@ impl Tearing {
         maps
     }
 
-    /// The twins of a point of the mesh as it was given.
-    pub(super) fn twins_of(&self, point: u32) -> impl Iterator<Item = u32> + '_ {
-        (self.points as u32..).zip(&self.twins).filter(move |(_, twin)| **twin == point).map(|(at, _)| at)
+    /// The twins of points of the mesh as it was given, those of the first point first.
+    pub(super) fn twins_of(&self, points: &[u32]) -> Vec<u32> {
+        let mut twins: Vec<(u32, u32)> = self.twins.iter().copied().zip(self.points as u32..).collect();
+        twins.sort_unstable();
+        let of = |&point: &u32| {
+            let first = twins.partition_point(|(original, _)| *original < point);
+            twins[first..].iter().take_while(move |(original, _)| *original == point).map(|(_, twin)| *twin)
+        };
+        points.iter().flat_map(of).collect()
     }
 
     pub(super) fn split_faces(&self) -> &Faces {
@@ -192,6 +198,7 @@ mod tests {
         let mut corners = tearing.split.corners().to_vec();
         corners.sort_unstable();
         assert_eq!(corners, (0..16).collect::<Vec<u32>>());
+        assert_eq!(tearing.twins_of(&[4, 0, 1]), [10, 12, 13, 9]);
         // Four inner edges, each welded at both ends.
         assert_eq!(tearing.seams.len(), 8);
     }

@@ -4,16 +4,13 @@ use std::collections::BTreeMap;
 
 use nucleus_core::Surface;
 
-use crate::attributes::{Choice, ElementKind, dynamic_constraint as con, n_component};
+use crate::attributes::{ElementKind, dynamic_constraint as con, n_component};
 use crate::compile::compiler::Compiler;
 use crate::compile::select::{Elements, Selected};
 use crate::graph::NodeId;
 
 use super::kinds::{self, Values};
 use super::split_mesh::Tearing;
-
-/// `componentType: object`.
-const OBJECT: Choice = Choice(6);
 
 impl Compiler<'_> {
     /// How a cloth mesh is split by the tearable surfaces that have a part of it; `None` where nothing can tear.
@@ -30,7 +27,7 @@ impl Compiler<'_> {
                     continue;
                 }
                 let of = Selected { owner: constraint, object: cloth, mesh };
-                let is_whole = graph.node(plug.node).get(&n_component::COMPONENT_TYPE) == OBJECT;
+                let is_whole = graph.node(plug.node).get(&n_component::COMPONENT_TYPE) == n_component::OBJECT;
                 let (kind, chosen) = self.selected(&of, plug.node, &elements);
                 let mut points = vec![is_whole; surface.positions.len()];
                 let mut edges = std::collections::BTreeSet::new();
