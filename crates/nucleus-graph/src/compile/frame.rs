@@ -17,6 +17,7 @@ use crate::scene::document::TimeSpan;
 
 use super::animated_mesh::Points;
 use super::attachments::AttachmentState;
+use super::fields::unit;
 use super::program::{EvaluationInterval, Program};
 use super::sources::{ClothSource, ColliderSource};
 use super::thickness::elements;
@@ -54,7 +55,8 @@ impl Program {
 
     /// The nodes that are evaluated for a frame of the first nucleus, in the order of evaluation.
     pub fn pulled(&self, frame: i64) -> Vec<NodeId> {
-        let interval = self.interval(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
+        let mut interval = self.interval(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
+        interval.to = self.graph().recorded_at(frame as f64);
         interval.input(&mut AttachmentState::default(), &|_, _| Vector3::zeros());
         interval.to.pulled()
     }
@@ -261,9 +263,4 @@ impl EvaluationInterval<'_> {
         let is_still = before == now && !self.is_discontinuous;
         (start, if is_still { Vec::new() } else { points(&now) })
     }
-}
-
-/// The vector of unit length, or zero for the zero vector.
-fn unit(vector: Vector3<f64>) -> Vector3<f64> {
-    vector.try_normalize(0.0).unwrap_or_default()
 }

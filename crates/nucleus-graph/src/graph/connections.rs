@@ -11,6 +11,7 @@ use crate::attributes::{Attribute, Key, Kind, NodeType, n_base, n_cloth, n_parti
 use super::error::GraphError;
 use super::node::{Connection, NodeId, Plug};
 use super::nodes::Graph;
+use super::wires::Wires;
 
 /// Inputs that Maya's creation commands connect.
 const CREATED: [&str; 12] = [
@@ -66,7 +67,7 @@ impl Graph {
                 return Err(GraphError::NotPluggable { plug });
             }
         }
-        if let Some(taken) = self.arriving(to.node).find(|wire| wire.to.overlaps(&to)) {
+        if let Some(taken) = self.arriving.of_element(to).iter().find(|wire| wire.to.overlaps(&to)) {
             let (input, source) = (self.describe(taken.to), self.describe(taken.from));
             return Err(GraphError::InputTaken { input, source_plug: source });
         }
@@ -94,22 +95,18 @@ impl Graph {
 
     /// The node that an input is connected from.
     pub fn source<T>(&self, node: NodeId, input: &Key<T>) -> Option<NodeId> {
-        let feeds = |wire: &&Connection| wire.to.attribute.name == input.row.name;
-        self.arriving(node).find(feeds).map(|wire| wire.from.node)
+        self.sources(node, input.row.name).next().map(|wire| wire.from.node)
     }
 
     /// The plugs that an output is connected to.
     pub fn targets<T>(&self, node: NodeId, output: &Key<T>) -> impl Iterator<Item = Plug> {
-        let name = output.row.name;
-        self.leaving(node).filter(move |wire| wire.from.attribute.name == name).map(|wire| wire.to)
+        self.leaving.of_attribute(node, output.row.name).map(|wire| wire.to)
     }
 
     /// The sources of a multi input, in the order of its elements.
     pub fn elements<T>(&self, node: NodeId, input: &Key<T>) -> Vec<(u32, Plug)> {
-        let wires = self.arriving(node).filter(|wire| wire.to.attribute.name == input.row.name);
-        let mut elements: Vec<_> = wires.filter_map(|wire| Some((wire.to.index?, wire.from))).collect();
-        elements.sort_by_key(|(index, _)| *index);
-        elements
+        let wires = self.sources(node, input.row.name);
+        wires.filter_map(|wire| Some((wire.to.index?, wire.from))).collect()
     }
 
     /// Refuses an index on an attribute that is not multi, a multi attribute without one, and components of
@@ -132,11 +129,12 @@ impl Graph {
     }
 }
 
-/// The state of a search: plugs already visited, and those still to expand.
+/// The state of a search: plugs already visited, those still to expand, and the connections looked at.
 #[derive(Default)]
 struct Frontier {
     visited: HashSet<(NodeId, &'static str, Option<u32>, Option<usize>)>,
     open: Vec<Plug>,
+    work: usize,
 }
 
 impl Frontier {
@@ -148,23 +146,40 @@ impl Frontier {
 }
 
 impl Graph {
-    /// Whether the output `from` depends on the input `to`. Searches from both ends in turn, because one of the
-    /// two searches is nearly always short.
+    /// Whether the output `from` depends on the input `to`. Searches from both ends, and goes on where fewer connections
+    /// have been looked at: one of the two searches is nearly always short.
     pub(super) fn would_create_cycle(&self, from: Plug, to: Plug) -> bool {
         let (mut downward, mut upward) = (Frontier::default(), Frontier::default());
         downward.add(to);
         upward.add(from);
         loop {
-            let Some(plug) = downward.open.pop() else { return false };
-            if self.reaches(plug, from) {
-                return true;
+            let [Some(&low), Some(&high)] = [downward.open.last(), upward.open.last()] else { return false };
+            let work = [
+                downward.work + 1 + self.count_of(low, low.attribute.writable, &self.leaving),
+                upward.work + 1 + self.count_of(high, !high.attribute.writable, &self.arriving),
+            ];
+            if work[0] < work[1] {
+                (downward.work, _) = (work[0], downward.open.pop());
+                if self.reaches(low, from) {
+                    return true;
+                }
+                self.downstream(low).for_each(|next| downward.add(next));
+            } else {
+                (upward.work, _) = (work[1], upward.open.pop());
+                if self.reaches(to, high) {
+                    return true;
+                }
+                self.upstream(high).for_each(|next| upward.add(next));
             }
-            self.downstream(plug).for_each(|next| downward.add(next));
-            let Some(plug) = upward.open.pop() else { return false };
-            if self.reaches(to, plug) {
-                return true;
-            }
-            self.upstream(plug).for_each(|next| upward.add(next));
+        }
+    }
+
+    /// The number of connections that a step of a search looks at: those of the attribute, or all of the node if it may
+    /// compute other attributes from this one or this one from others.
+    fn count_of(&self, plug: Plug, is_through_node: bool, wires: &Wires) -> usize {
+        match is_through_node {
+            true => wires.of_node(plug.node).len(),
+            false => wires.of_attribute(plug.node, plug.attribute.name).count(),
         }
     }
 
@@ -177,29 +192,23 @@ impl Graph {
     /// The plugs that a plug flows into directly.
     fn downstream(&self, plug: Plug) -> impl Iterator<Item = Plug> {
         let node_type = self.node(plug.node).node_type();
-        self.leaving(plug.node).filter_map(move |connection| {
-            if connection.from.overlaps(&plug) {
-                Some(connection.to)
-            } else if feeds(node_type, plug.attribute, connection.from.attribute) {
-                Some(connection.from)
-            } else {
-                None
-            }
-        })
+        let own = self.leaving.of_attribute(plug.node, plug.attribute.name);
+        let own = own.filter(move |wire| wire.from.overlaps(&plug)).map(|wire| wire.to);
+        // Only from inputs a node computes outputs.
+        let others = plug.attribute.writable.then(|| self.leaving(plug.node)).into_iter().flatten();
+        let others = others.map(|wire| wire.from);
+        own.chain(others.filter(move |from| feeds(node_type, plug.attribute, from.attribute)))
     }
 
     /// The plugs that flow into a plug directly.
     fn upstream(&self, plug: Plug) -> impl Iterator<Item = Plug> {
         let node_type = self.node(plug.node).node_type();
-        self.arriving(plug.node).filter_map(move |connection| {
-            if connection.to.overlaps(&plug) {
-                Some(connection.from)
-            } else if feeds(node_type, connection.to.attribute, plug.attribute) {
-                Some(connection.to)
-            } else {
-                None
-            }
-        })
+        let own = self.sources(plug.node, plug.attribute.name);
+        let own = own.filter(move |wire| wire.to.overlaps(&plug)).map(|wire| wire.from);
+        // An attribute that is writable is not computed from others.
+        let others = (!plug.attribute.writable).then(|| self.arriving(plug.node)).into_iter().flatten();
+        let others = others.map(|wire| wire.to);
+        own.chain(others.filter(move |to| feeds(node_type, to.attribute, plug.attribute)))
     }
 }
 

@@ -1,8 +1,6 @@
 //! The connections of Maya's creation commands: for cloth, colliders and particles of a nucleus, for constraints
 //! on components, and for fields and emitters of an object.
 
-use std::collections::BTreeSet;
-
 use crate::attributes::{
     Choice, Component, ElementKind, Key, Plugged, Selection, Value, Which, dyn_base, dynamic_constraint,
     field, mesh, n_base, n_cloth, n_component, n_particle, n_rigid, nucleus, particle, point_emitter,
@@ -10,18 +8,9 @@ use crate::attributes::{
 };
 
 use super::error::GraphError;
-use super::node::{Connection, NodeId, Plug};
+use super::node::{NodeId, Plug};
 use super::nodes::Graph;
 use super::setting::Setting;
-
-/// Maya's indices of `componentType` and of `elements`.
-const POINT: Choice = Choice(2);
-const EDGE: Choice = Choice(3);
-const FACE: Choice = Choice(4);
-const OBJECT: Choice = Choice(6);
-const LISTED: Choice = Choice(0);
-const BORDERS: Choice = Choice(1);
-const ALL: Choice = Choice(2);
 
 /// The arguments of a creation command.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,8 +64,7 @@ impl Graph {
     pub fn creation(&self, node: NodeId) -> Option<Creation> {
         let node_type = self.node(node).node_type();
         if node_type.is_a(&n_base::N_BASE) {
-            let fed = |wire: &&Connection| wire.to.attribute.name == n_base::INPUT_MESH.row.name;
-            let mesh = self.arriving(node).find(fed).map(|wire| wire.from.node);
+            let mesh = self.source(node, &n_base::INPUT_MESH);
             let nucleus = self.targets(node, &n_base::CURRENT_STATE).next()?.node;
             if node_type.is_a(&n_particle::N_PARTICLE) {
                 return Some(Creation::Object { mesh: None, nucleus });
@@ -156,8 +144,7 @@ impl Graph {
     /// The mesh that [`Graph::set_rest_shape`] gives a cloth.
     pub fn rest_shape(&self, cloth: NodeId) -> Option<NodeId> {
         let is_mesh = |plug: &Plug| *plug == Plug::element(plug.node, &surface_shape::WORLD_MESH, 0);
-        let into = |wire: &&Connection| wire.to.attribute.name == n_cloth::REST_SHAPE_MESH.row.name;
-        let from = self.arriving(cloth).find(into).map(|wire| wire.from);
+        let from = self.sources(cloth, n_cloth::REST_SHAPE_MESH.row.name).next().map(|wire| wire.from);
         from.filter(is_mesh).map(|plug| plug.node)
     }
 
@@ -190,11 +177,8 @@ impl Graph {
     /// When the field is connected already.
     pub fn create_field(&mut self, field: NodeId, object: NodeId) -> Result<(), GraphError> {
         self.connect(Plug::new(object, &particle::FIELD_DATA), Plug::element(field, &field::INPUT_DATA, 0))?;
-        let q = (0..).find(|&q| {
-            let settings = Plug::element(object, &particle::PP_FIELD_DATA, q);
-            self.leaving(object).all(|wire| wire.from != settings)
-        });
-        let settings = Plug::element(object, &particle::PP_FIELD_DATA, q.unwrap_or_default());
+        let q = self.leaving.first_free(object, &[particle::PP_FIELD_DATA.row.name]);
+        let settings = Plug::element(object, &particle::PP_FIELD_DATA, q);
         self.connect(settings, Plug::element(field, &field::INPUT_PP_DATA, 0))?;
         let r = self.free_index(object, [&particle::INPUT_FORCE]);
         let force = Plug::element(field, &field::OUTPUT_FORCE, 0);
@@ -266,16 +250,16 @@ impl Graph {
         selections: impl Iterator<Item = &'a Selection>,
     ) -> Result<NodeId, GraphError> {
         let member = self.add_created("nComponent", &n_component::N_COMPONENT, constraint);
-        let (mut elements, mut listed, mut meanings) = (LISTED, Vec::new(), Vec::new());
+        let (mut elements, mut listed, mut meanings) = (n_component::LISTED, Vec::new(), Vec::new());
         for selection in selections {
             match selection {
-                Selection::Object | Selection::Elements(_, Which::All) => elements = ALL,
+                Selection::Object | Selection::Elements(_, Which::All) => elements = n_component::ALL,
                 Selection::Elements(_, Which::Range(first, last)) => listed.extend(*first..=*last),
                 Selection::Elements(_, meaning) => meanings.push(meaning.to_string()),
             }
         }
-        if elements != ALL && listed.is_empty() && meanings == ["border"] {
-            (elements, meanings) = (BORDERS, Vec::new());
+        if elements != n_component::ALL && listed.is_empty() && meanings == ["border"] {
+            (elements, meanings) = (n_component::BORDERS, Vec::new());
         }
         let mut set = vec![
             (&n_component::COMPONENT_TYPE.row, Value::Choice(component_type)),
@@ -309,20 +293,16 @@ impl Graph {
 
     /// The first index that is free on all of these multi inputs.
     fn free_index<const N: usize>(&self, node: NodeId, inputs: [&Key<Plugged>; N]) -> u32 {
-        let taken = self
-            .arriving(node)
-            .filter(|wire| inputs.iter().any(|key| key.row.name == wire.to.attribute.name));
-        let taken: BTreeSet<u32> = taken.filter_map(|wire| wire.to.index).collect();
-        (0..).find(|index| !taken.contains(index)).unwrap_or_default()
+        self.arriving.first_free(node, &inputs.map(|key| key.row.name))
     }
 }
 
 /// Maya's index of the kind of elements of a selection.
 fn component_type(selection: &Selection) -> Choice {
     match selection {
-        Selection::Object => OBJECT,
-        Selection::Elements(ElementKind::Point, _) => POINT,
-        Selection::Elements(ElementKind::Edge, _) => EDGE,
-        Selection::Elements(ElementKind::Face, _) => FACE,
+        Selection::Object => n_component::OBJECT,
+        Selection::Elements(ElementKind::Point, _) => n_component::POINT,
+        Selection::Elements(ElementKind::Edge, _) => n_component::EDGE,
+        Selection::Elements(ElementKind::Face, _) => n_component::FACE,
     }
 }

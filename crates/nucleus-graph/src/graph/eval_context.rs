@@ -18,18 +18,24 @@ use super::setting::{Setting, as_kind};
 /// Axes by Maya's index of `rotateOrder`: xyz, yzx, zxy, xzy, yxz, zyx.
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
 
-/// Evaluates a graph at one frame. Placements are cached, and evaluated nodes recorded.
+/// Evaluates a graph at one frame. Placements are cached.
 pub struct EvalContext<'g> {
     graph: &'g Graph,
     frame: f64,
     placements: RefCell<HashMap<NodeId, Affine>>,
-    pulled: RefCell<(HashSet<NodeId>, Vec<NodeId>)>,
+    /// The evaluated nodes, as a set and in order, where they are recorded.
+    pulled: Option<RefCell<(HashSet<NodeId>, Vec<NodeId>)>>,
 }
 
 impl Graph {
     /// The graph at a frame; a fraction is a time between frames.
     pub fn at(&self, frame: f64) -> EvalContext<'_> {
-        EvalContext { graph: self, frame, placements: RefCell::default(), pulled: RefCell::default() }
+        EvalContext { graph: self, frame, placements: RefCell::default(), pulled: None }
+    }
+
+    /// The same, with a record of the evaluated nodes.
+    pub(crate) fn recorded_at(&self, frame: f64) -> EvalContext<'_> {
+        EvalContext { pulled: Some(RefCell::default()), ..self.at(frame) }
     }
 
     /// Whether an attribute changes over time, by its own keys or those of a source.
@@ -47,7 +53,7 @@ impl Graph {
     }
 
     /// The same by long name.
-    pub(crate) fn is_given_by_name(&self, node: NodeId, name: &str) -> bool {
+    pub(crate) fn is_given_by_name(&self, node: NodeId, name: &'static str) -> bool {
         self.node(node).set_or_preset(name).is_some() || self.sources(node, name).next().is_some()
     }
 
@@ -74,9 +80,9 @@ impl Graph {
         false
     }
 
-    /// Connections to an attribute, its elements or its components.
-    pub(super) fn sources(&self, node: NodeId, name: &str) -> impl Iterator<Item = &Connection> {
-        self.arriving(node).filter(move |wire| wire.to.attribute.name == name)
+    /// Connections to an attribute, its elements or its components: by element, then in the order of connecting.
+    pub(super) fn sources(&self, node: NodeId, name: &'static str) -> impl Iterator<Item = &Connection> {
+        self.arriving.of_attribute(node, name)
     }
 
     /// The transform from a node's space to world space at a frame. Lengths in scene units. For many nodes, call
@@ -146,13 +152,14 @@ impl<'g> EvalContext<'g> {
         }
     }
 
-    /// The nodes evaluated so far, in the order of their first evaluation.
-    pub fn pulled(&self) -> Vec<NodeId> {
-        self.pulled.borrow().1.clone()
+    /// The nodes evaluated so far, in the order of their first evaluation; none where they are not recorded.
+    pub(crate) fn pulled(&self) -> Vec<NodeId> {
+        self.pulled.as_ref().map(|pulled| pulled.borrow().1.clone()).unwrap_or_default()
     }
 
     fn mark_pulled(&self, node: NodeId) {
-        let (seen, order) = &mut *self.pulled.borrow_mut();
+        let Some(pulled) = &self.pulled else { return };
+        let (seen, order) = &mut *pulled.borrow_mut();
         if seen.insert(node) {
             order.push(node);
         }

@@ -8,6 +8,7 @@
 //! | which plugs can be connected, and the cycle test   | [`Graph::connect`]         |
 //! | the value of a plug at a frame                     | [`EvalContext::get`]       |
 //! | the transform of a node from its space to world    | [`EvalContext::placement`] |
+//! | how connections are found                          | `wires.rs`                 |
 //! | how a plug is written                              | [`Graph::plug`]            |
 //! | how a graph is drawn                               | [`Graph::dot`]             |
 //!
@@ -23,6 +24,7 @@ mod node;
 mod nodes;
 mod setting;
 mod text;
+mod wires;
 
 pub use connections::{joins_a_nucleus, may_be_from_creation};
 pub use creation::Creation;

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use crate::attributes::{Attribute, NodeType, dynamic_constraint, n_base, surface_shape, time, transform};
 
 use super::error::GraphError;
-use super::node::{Connection, Node, NodeId};
+use super::node::{Connection, Node, NodeId, Plug};
 use super::setting::Setting;
+use super::wires::Wires;
 
 /// The name of the clock node.
 pub const CLOCK: &str = "time1";
@@ -19,10 +20,12 @@ pub struct Graph {
     /// Indexed by [`NodeId`]; `None` for deleted nodes.
     nodes: Vec<Option<Node>>,
     names: BTreeMap<String, NodeId>,
-    /// Connections by the node of their output, in the order of connecting.
-    leaving: BTreeMap<NodeId, Vec<Connection>>,
-    /// The same connections by the node of their input.
-    arriving: BTreeMap<NodeId, Vec<Connection>>,
+    /// The number from which on creation commands look for a free name, by the stem of the name.
+    next_numbers: BTreeMap<String, u64>,
+    /// Connections by their output.
+    pub(super) leaving: Wires,
+    /// The same connections by their input.
+    pub(super) arriving: Wires,
 }
 
 impl Graph {
@@ -31,8 +34,9 @@ impl Graph {
         let mut graph = Self {
             nodes: Vec::new(),
             names: BTreeMap::new(),
-            leaving: BTreeMap::new(),
-            arriving: BTreeMap::new(),
+            next_numbers: BTreeMap::new(),
+            leaving: Wires::default(),
+            arriving: Wires::default(),
         };
         graph.push(CLOCK.to_owned(), &time::TIME, None);
         graph
@@ -66,7 +70,7 @@ impl Graph {
             return Err(GraphError::Clock);
         }
         let old = std::mem::replace(&mut self.node_mut(node).name, name.to_owned());
-        self.names.remove(&old);
+        self.free_name(&old);
         self.names.insert(name.to_owned(), node);
         self.make_independent(node);
         Ok(())
@@ -230,9 +234,15 @@ impl Graph {
                 other.blend_target = None;
             }
             if let Some(old) = self.nodes[node.index()].take() {
-                self.names.remove(&old.name);
+                self.free_name(&old.name);
             }
         }
+    }
+
+    /// Frees a name. A creation command may then find a free number below its last one.
+    fn free_name(&mut self, name: &str) {
+        self.names.remove(name);
+        self.next_numbers.clear();
     }
 
     /// A node.
@@ -270,17 +280,22 @@ impl Graph {
 
     /// Connections from outputs of a node.
     pub fn leaving(&self, node: NodeId) -> impl Iterator<Item = &Connection> {
-        self.leaving.get(&node).into_iter().flatten()
+        self.leaving.of_node(node).iter()
     }
 
     /// Connections to inputs of a node.
     pub fn arriving(&self, node: NodeId) -> impl Iterator<Item = &Connection> {
-        self.arriving.get(&node).into_iter().flatten()
+        self.arriving.of_node(node).iter()
+    }
+
+    /// Whether an output is connected to an input.
+    pub fn has_connection(&self, from: Plug, to: Plug) -> bool {
+        self.arriving.of_element(to).contains(&Connection { from, to })
     }
 
     /// All connections, by the node of their input, then in the order of connecting.
     pub fn connections(&self) -> impl Iterator<Item = &Connection> {
-        self.arriving.values().flatten()
+        self.arriving.all()
     }
 
     /// Adds a node for a creation command. Its name is `stem` and the first free number.
@@ -290,8 +305,12 @@ impl Graph {
         node_type: &'static NodeType,
         created_by: NodeId,
     ) -> NodeId {
-        let free = (1..).map(|n| format!("{stem}{n}")).find(|name| self.find(name).is_none());
-        self.push(free.unwrap_or_default(), node_type, Some(created_by))
+        let mut number = self.next_numbers.get(stem).copied().unwrap_or(1);
+        while self.find(&format!("{stem}{number}")).is_some() {
+            number += 1;
+        }
+        self.next_numbers.insert(stem.to_owned(), number + 1);
+        self.push(format!("{stem}{number}"), node_type, Some(created_by))
     }
 
     /// Makes the nodes of a creation command independent: those that it made for this node, or for the owner of
@@ -317,20 +336,14 @@ impl Graph {
     }
 
     pub(super) fn insert_connection(&mut self, connection: Connection) {
-        self.leaving.entry(connection.from.node).or_default().push(connection);
-        self.arriving.entry(connection.to.node).or_default().push(connection);
+        self.leaving.insert(connection.from, connection);
+        self.arriving.insert(connection.to, connection);
     }
 
     /// Returns whether the connection existed.
     pub(super) fn remove_connection(&mut self, connection: Connection) -> bool {
-        let there = self.arriving(connection.to.node).any(|other| *other == connection);
-        if let Some(leaving) = self.leaving.get_mut(&connection.from.node) {
-            leaving.retain(|other| *other != connection);
-        }
-        if let Some(arriving) = self.arriving.get_mut(&connection.to.node) {
-            arriving.retain(|other| *other != connection);
-        }
-        there
+        self.leaving.remove(connection.from, connection);
+        self.arriving.remove(connection.to, connection)
     }
 
     /// A node, unless this graph does not have it.

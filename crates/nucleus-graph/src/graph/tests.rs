@@ -245,3 +245,31 @@ fn a_child_is_placed_in_the_space_of_its_parent() {
     assert_eq!(graph.placement(hand, 10.0).offset.as_slice(), [0.0, 2.0, 0.0]);
     assert!(graph.moves(hand) && graph.moves(arm));
 }
+
+#[test]
+fn a_creation_command_takes_the_first_free_number_and_the_first_free_index() {
+    let mut graph = Graph::new();
+    let nucleus = graph.add("nucleus1", &nucleus::NUCLEUS).expect("free");
+    let cloths: Vec<NodeId> = (0..4)
+        .map(|k| {
+            let cloth = graph.add(&format!("cloth{k}"), &n_cloth::N_CLOTH).expect("free");
+            let plane = graph.add(&format!("sheet{k}"), &poly_plane::POLY_PLANE).expect("free");
+            graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
+            cloth
+        })
+        .collect();
+    let of = |graph: &Graph| -> Vec<(String, u32)> {
+        let objects = graph.elements(nucleus, &nucleus::INPUT_ACTIVE).into_iter();
+        objects.map(|(index, plug)| (graph.node(plug.node).name().to_owned(), index)).collect()
+    };
+    let all = |names: [&str; 4]| names.iter().map(|name| (*name).to_owned()).zip(0..).collect::<Vec<_>>();
+    assert_eq!(of(&graph), all(["cloth0", "cloth1", "cloth2", "cloth3"]));
+    graph.remove(cloths[1]);
+    assert!(graph.find("outputCloth2").is_none());
+    let cloth = graph.add("late", &n_cloth::N_CLOTH).expect("free");
+    let plane = graph.find("sheet1").expect("it is not removed with the cloth");
+    graph.create_cloth(cloth, plane, nucleus).expect("not wired yet");
+    assert_eq!(of(&graph), all(["cloth0", "late", "cloth2", "cloth3"]));
+    let output = graph.find("outputCloth2").expect("the free number is taken again");
+    assert_eq!(graph.node(output).created_by(), Some(cloth));
+}

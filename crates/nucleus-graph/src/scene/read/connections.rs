@@ -87,7 +87,7 @@ impl Connections<'_> {
             });
             let [Some(from), Some(to)] = plugs else { continue };
             // A connection that the short form implies may be repeated.
-            if graph.arriving(to.node).any(|wire| wire.from == from && wire.to == to) {
+            if graph.has_connection(from, to) {
                 continue;
             }
             self.replace_implicit(graph, to, &explicit);
