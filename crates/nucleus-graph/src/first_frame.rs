@@ -13,6 +13,7 @@ use crate::attributes::{Choice, dynamic_constraint, nucleus};
 use crate::audit::{AuditScope, collision_rules};
 use crate::compile::{NucleusProgram, Object, ObjectKind, Program};
 use crate::diagnostic::Findings;
+use crate::mesh::{bounding_box, is_closed, sides};
 use crate::scene::{Diagnostic, Scene};
 
 /// `connectionMethod`.
@@ -110,9 +111,7 @@ fn warn_of_scale(scene: &Scene, program: &Program, nucleus: &NucleusProgram, fin
 
 /// The longest side of the bounding box.
 fn width(positions: &[Vector3<f64>]) -> f64 {
-    let Some(first) = positions.first() else { return 0.0 };
-    let [low, high] =
-        positions.iter().fold([*first; 2], |[low, high], point| [low.inf(point), high.sup(point)]);
+    let [low, high] = bounding_box(positions);
     (high - low).max()
 }
 
@@ -160,10 +159,6 @@ fn median_edge(surface: &Surface) -> Option<f64> {
     }
     let middle = lengths.len() / 2;
     Some(*lengths.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
-fn sides(faces: &Faces) -> impl Iterator<Item = [u32; 2]> + '_ {
-    faces.iter().flat_map(|face| (0..face.len()).map(|k| [face[k], face[(k + 1) % face.len()]]))
 }
 
 /// Reports each pair of objects that intersects, and each cloth that lies in a closed collider.
@@ -267,15 +262,6 @@ fn is_crossed([a, b, c]: [Vector3<f64>; 3]) -> bool {
     }
     let normal = (b - a).cross(&(c - a));
     crossings == 1 && normal.x != 0.0 && normal.dot(&a) / normal.x > 0.0
-}
-
-/// Whether every edge has two faces.
-fn is_closed(faces: &Faces) -> bool {
-    let mut count: BTreeMap<[u32; 2], u32> = BTreeMap::new();
-    for [a, b] in sides(faces) {
-        *count.entry([a.min(b), a.max(b)]).or_default() += 1;
-    }
-    count.values().all(|&faces| faces == 2)
 }
 
 #[cfg(test)]

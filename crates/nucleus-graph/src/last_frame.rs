@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use nucleus_core::Real;
 
 use crate::compile::{Object, ObjectKind};
+use crate::mesh::area;
 use crate::simulation::Simulation;
 
 /// Thickness over width, both as standard deviations, below which the start of a sheet is flat to rounding.
@@ -28,7 +29,7 @@ pub fn flat_cloths<R: Real>(simulation: &Simulation<R>) -> Vec<String> {
         }
         let state = simulation.state();
         let end: Vec<_> = (0..object.points).map(|point| state.point(cloth, point)).collect();
-        flatness(&end) < FLAT_END && area(object, &end) < (1.0 - PRESSED) * area(object, start)
+        flatness(&end) < FLAT_END && area(&object.faces, &end) < (1.0 - PRESSED) * area(&object.faces, start)
     };
     simulation.objects().iter().filter(is_stuck).map(|object| object.name.clone()).collect()
 }
@@ -42,11 +43,6 @@ fn flatness(points: &[Vector3<f64>]) -> f64 {
     let normal = eigen.eigenvectors.column(eigen.eigenvalues.imin());
     let thickness = points.iter().map(|p| (p - middle).dot(&normal).powi(2)).sum::<f64>();
     if eigen.eigenvalues.max() > 0.0 { (thickness / eigen.eigenvalues.max()).sqrt() } else { 1.0 }
-}
-
-fn area(object: &Object, points: &[Vector3<f64>]) -> f64 {
-    let corners = |triangle: [u32; 3]| triangle.map(|k| points[k as usize]);
-    object.faces.triangles().map(corners).map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum()
 }
 
 #[cfg(test)]

@@ -11,7 +11,9 @@ use crate::attributes::{Attribute, Key, NodeType, Plugged, nucleus};
 use crate::diagnostic::Findings;
 use crate::files;
 use crate::graph::{EvalContext, NodeId};
-use crate::memory::{Cost, Size};
+use crate::memory::{self, Cost, Size};
+use crate::mesh::read_obj;
+use crate::paint::read_vectors;
 use crate::scene::document::Scene;
 
 use super::geometry::Geometry;
@@ -143,6 +145,17 @@ impl<'a> Compiler<'a> {
         let bytes = files::length(path).saturating_mul(cost);
         let checked = self.geometry.budget.check(bytes);
         checked.map_err(|refused| format!("to read `{}` takes {refused}", path.display()))
+    }
+
+    /// The points of an OBJ file, or the vectors of a file of numbers; else the reason why it cannot be read.
+    pub(super) fn vectors_of_file(&self, file: &str) -> Result<Vec<[f64; 3]>, String> {
+        let path = self.scene.source.path(file);
+        self.check_file(&path, memory::NUMBER_BYTE)?;
+        if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
+            let points = read_obj(path).map_err(|error| error.to_string())?.positions;
+            return Ok(points.into_iter().map(Into::into).collect());
+        }
+        read_vectors(&path).map_err(|error| error.to_string())
     }
 
     /// Adds an object to the program, and its mass in kilograms to the total.

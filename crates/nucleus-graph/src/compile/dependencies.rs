@@ -38,6 +38,17 @@ const LISTED: Choice = Choice(3);
 /// `emitterType`.
 const VOLUME: Choice = Choice(4);
 
+/// A ramp of particles, which has no effect without an input.
+macro_rules! ramp {
+    ($ramp:ident over $input:ident) => {
+        Dependency {
+            rows: &[&n_particle::$ramp.row],
+            need: Need::Choice(&n_particle::$input, None),
+            help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
+        }
+    };
+}
+
 /// Of objects, of the nucleus, of fields and of emitters, by type.
 pub(super) static DEPENDENCIES: &[Dependency] = &[
     Dependency {
@@ -205,56 +216,16 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
         need: Need::On(&n_particle::ENABLE_SPH),
         help: "write `enableSPH: true`",
     },
-    Dependency {
-        rows: &[&n_particle::MASS_SCALE.row],
-        need: Need::Choice(&n_particle::MASS_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::FRICTION_SCALE.row],
-        need: Need::Choice(&n_particle::FRICTION_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::STICKINESS_SCALE.row],
-        need: Need::Choice(&n_particle::STICKINESS_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::COLLIDE_STRENGTH_SCALE.row],
-        need: Need::Choice(&n_particle::COLLIDE_STRENGTH_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::BOUNCE_SCALE.row],
-        need: Need::Choice(&n_particle::BOUNCE_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::VISCOSITY_SCALE.row],
-        need: Need::Choice(&n_particle::VISCOSITY_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::SURFACE_TENSION_SCALE.row],
-        need: Need::Choice(&n_particle::SURFACE_TENSION_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::OPACITY_SCALE.row],
-        need: Need::Choice(&n_particle::OPACITY_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::RADIUS_SCALE.row],
-        need: Need::Choice(&n_particle::RADIUS_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
-    Dependency {
-        rows: &[&n_particle::POINT_FIELD_SCALE.row],
-        need: Need::Choice(&n_particle::POINT_FIELD_SCALE_INPUT, None),
-        help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
-    },
+    ramp!(MASS_SCALE over MASS_SCALE_INPUT),
+    ramp!(FRICTION_SCALE over FRICTION_SCALE_INPUT),
+    ramp!(STICKINESS_SCALE over STICKINESS_SCALE_INPUT),
+    ramp!(COLLIDE_STRENGTH_SCALE over COLLIDE_STRENGTH_SCALE_INPUT),
+    ramp!(BOUNCE_SCALE over BOUNCE_SCALE_INPUT),
+    ramp!(VISCOSITY_SCALE over VISCOSITY_SCALE_INPUT),
+    ramp!(SURFACE_TENSION_SCALE over SURFACE_TENSION_SCALE_INPUT),
+    ramp!(OPACITY_SCALE over OPACITY_SCALE_INPUT),
+    ramp!(RADIUS_SCALE over RADIUS_SCALE_INPUT),
+    ramp!(POINT_FIELD_SCALE over POINT_FIELD_SCALE_INPUT),
     Dependency {
         rows: &[&field::USE_MAX_DISTANCE.row],
         need: Need::Number(&field::MAX_DISTANCE),

@@ -11,6 +11,7 @@ use crate::attributes::{Key, n_particle, surface_shape};
 use crate::diagnostic::nearest;
 use crate::graph::NodeId;
 use crate::memory::{Cost, Size};
+use crate::mesh::bounding_box;
 
 use super::compiler::Compiler;
 use super::liquids::rest_distance;
@@ -101,7 +102,7 @@ impl Compiler<'_> {
                 self.geometry.animated(self.scene, id, self.findings)?.at(&self.start).to_vec();
         }
         surface.positions.iter_mut().for_each(|position| *position = placement.point(*position));
-        let [low, high] = bounds(&surface);
+        let [low, high] = bounding_box(&surface.positions);
         self.claim_filling(node, (high - low).map(|x| x / spacing + 1.0).product(), &n_particle::FILL_MESH)?;
         let filled = fill(&surface, spacing);
         if filled.is_empty() {
@@ -128,14 +129,9 @@ impl Compiler<'_> {
     }
 }
 
-fn bounds(surface: &Surface) -> [Vector3<f64>; 2] {
-    let first = surface.positions.first().copied().unwrap_or_default();
-    surface.positions.iter().fold([first; 2], |[low, high], point| [low.inf(point), high.sup(point)])
-}
-
 /// The centres of the cubes of a grid that are inside a closed surface. The grid is centred in the surface's bounds.
 fn fill(surface: &Surface, spacing: f64) -> Vec<Vector3<f64>> {
-    let [low, high] = bounds(surface);
+    let [low, high] = bounding_box(&surface.positions);
     let cells = ((high - low) / spacing).map(|cells| (cells + ROUNDING).floor().max(1.0));
     let first = (low + high) / 2.0 - (cells - Vector3::repeat(1.0)) * (spacing / 2.0);
     let [layers, rows] = [1, 2].map(|axis| cells[axis] as usize);

@@ -86,27 +86,18 @@ impl Geometry {
     /// The texture coordinates of a node's points; `None` if it has none. Reads an OBJ file on each call.
     pub(super) fn uvs(&self, scene: &Scene, node: NodeId) -> Result<Option<Vec<Option<[f64; 2]>>>, ObjError> {
         let own = scene.graph.node(node);
-        if own.node_type() == &poly_plane::POLY_PLANE {
-            use poly_plane::{SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH};
-            let [sx, sy] = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT].map(|key| count(own.get(key)));
-            return Ok(Some(poly_plane_uvs((sx, sy)).into_iter().map(Some).collect()));
+        if let Some(uvs) = plane_uvs(own) {
+            return Ok(Some(uvs.into_iter().map(Some).collect()));
         }
         if own.node_type() != &mesh::MESH {
             return Ok(None);
         }
-        let file = self.file_of(scene, node).unwrap_or_default();
+        let file = file_of(scene, own).unwrap_or_default();
         if MeshFormat::of(&file) != MeshFormat::Obj {
             return Ok(self.made.get(&node).and_then(|mesh| mesh.as_ref()?.uvs.clone()));
         }
         let uvs = read_obj_uvs(scene.source.path(&file))?;
         Ok(Some(uvs).filter(|uvs| uvs.iter().any(Option::is_some)))
-    }
-
-    /// The file that a node's mesh is read from, at the first frame of the scene; `None` for other meshes.
-    pub(super) fn file_of(&self, scene: &Scene, node: NodeId) -> Option<String> {
-        let own = scene.graph.node(node);
-        let file = (own.node_type() == &mesh::MESH).then(|| own.get(&mesh::FILE))?;
-        Some(NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start)))
     }
 
     /// Whether the points of a node are constant in mesh space.
@@ -120,6 +111,20 @@ impl Geometry {
         let make = || make(scene, scene.graph.node(node), budget, findings);
         made.entry(node).or_insert_with(make).as_ref()
     }
+}
+
+/// The file that a mesh node is read from, at the first frame of the scene; `None` for other nodes.
+pub(super) fn file_of(scene: &Scene, node: &Node) -> Option<String> {
+    let file = (node.node_type() == &mesh::MESH).then(|| node.get(&mesh::FILE))?;
+    Some(NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start)))
+}
+
+/// The texture coordinates of the points of a polyPlane; `None` for other nodes.
+pub(super) fn plane_uvs(node: &Node) -> Option<Vec<[f64; 2]>> {
+    use poly_plane::{SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH};
+    let [width, height] = [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT];
+    let is_plane = node.node_type() == &poly_plane::POLY_PLANE;
+    is_plane.then(|| poly_plane_uvs((count(node.get(width)), count(node.get(height)))))
 }
 
 fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings) -> Option<Mesh> {

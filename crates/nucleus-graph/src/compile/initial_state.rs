@@ -15,9 +15,7 @@ use nucleus_core::{Faces, MAX_COORDINATE, Start, Surface};
 
 use crate::attributes::{Key, Painting, Value, n_base, n_cloth, n_particle, surface_shape};
 use crate::graph::{Graph, NodeId};
-use crate::memory::{self, Cost, Size};
-use crate::mesh::read_obj;
-use crate::paint::read_vectors;
+use crate::memory::{Cost, Size};
 
 use super::compiler::Compiler;
 use super::emission::emitter_nodes;
@@ -189,17 +187,6 @@ impl Compiler<'_> {
             Some(Value::Painting(Painting::File(file))) => self.vectors_of_file(&file),
             _ => Ok(Vec::new()),
         }
-    }
-
-    /// The points of an OBJ file, or the vectors of a file of numbers; else the reason why it cannot be read.
-    pub(super) fn vectors_of_file(&self, file: &str) -> Result<Vec<[f64; 3]>, String> {
-        let path = self.scene.source.path(file);
-        self.check_file(&path, memory::NUMBER_BYTE)?;
-        if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
-            let points = read_obj(path).map_err(|error| error.to_string())?.positions;
-            return Ok(points.into_iter().map(Into::into).collect());
-        }
-        read_vectors(&path).map_err(|error| error.to_string())
     }
 }
 

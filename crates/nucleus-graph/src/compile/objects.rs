@@ -4,12 +4,13 @@ use nucleus_core::{Cloth, ClothId, ClothLists, Collider, ColliderId, Mass, Surfa
 
 use crate::attributes::{Key, n_base, n_cloth, n_particle, n_rigid, nucleus, particle, surface_shape};
 use crate::graph::{Graph, NodeId};
+use crate::mesh::area;
 
 use super::animated_mesh::AnimatedMesh;
 use super::compiler::{CompiledNucleus, Compiler};
 use super::initial_state::PlacedObject;
 use super::program::ObjectKind;
-use super::soft_body::{self, area};
+use super::soft_body;
 use super::sources::{ClothSource, ColliderSource, MapScales};
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::units::{self, CLASSIC};
@@ -107,7 +108,7 @@ impl Compiler<'_> {
         let faces = surface.faces.clone();
         let lists = constraint_lists(&self.scene.graph, id, self.program.node, &scales);
         let followed = self.followed_mesh(id, mesh, &vertex_maps.input_attract);
-        let (face_count, area) = (faces.len(), area(&surface));
+        let (face_count, area) = (faces.len(), area(&surface.faces, &surface.positions));
         let cloth = Cloth { surface, mass, lists, warp, vertex_maps, start, particles: None };
         let kilograms = match mass {
             _ if !cloth.vertex_maps.mass.is_empty() => cloth.point_masses().iter().sum(),

@@ -5,20 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector3;
 use nucleus_core::Faces;
 
-use crate::attributes::{Choice, ElementKind, Which, n_component, read_which};
+use crate::attributes::{ElementKind, Which, n_component, read_which};
 use crate::graph::NodeId;
 use crate::mesh::read_obj_groups;
 use crate::paint::{Expression, Point, Texture};
 
 use super::compiler::Compiler;
-
-/// `elements` of a component.
-const BORDERS: Choice = Choice(1);
-const ALL: Choice = Choice(2);
-/// `componentType` of a component.
-const EDGE: Choice = Choice(3);
-const FACE: Choice = Choice(4);
-const OBJECT: Choice = Choice(6);
+use super::geometry::file_of;
 
 /// The elements of a mesh that can be selected.
 pub(super) struct Elements<'a> {
@@ -129,16 +122,16 @@ impl Compiler<'_> {
     ) -> (ElementKind, Vec<u32>) {
         let node = self.scene.graph.node(component);
         let kind = match node.get(&n_component::COMPONENT_TYPE) {
-            EDGE => ElementKind::Edge,
-            FACE => ElementKind::Face,
+            n_component::EDGE => ElementKind::Edge,
+            n_component::FACE => ElementKind::Face,
             _ => ElementKind::Point,
         };
         let which = node.get(&n_component::ELEMENTS);
-        if which == ALL || node.get(&n_component::COMPONENT_TYPE) == OBJECT {
+        if which == n_component::ALL || node.get(&n_component::COMPONENT_TYPE) == n_component::OBJECT {
             return (kind, (0..elements.count(kind) as u32).collect());
         }
         let mut found: Vec<u32> = Vec::new();
-        if which == BORDERS {
+        if which == n_component::BORDERS {
             found.extend(elements.border(kind));
         }
         let listed = node.get(&n_component::COMPONENT_INDICES);
@@ -259,7 +252,7 @@ impl Compiler<'_> {
         elements: &Elements<'_>,
     ) -> Result<Vec<u32>, String> {
         let mesh = self.scene.graph.node(of.mesh);
-        let file = self.geometry.file_of(self.scene, of.mesh);
+        let file = file_of(self.scene, self.scene.graph.node(of.mesh));
         let file = file.ok_or_else(|| format!("`{}` is not read from a file", mesh.name()))?;
         let groups = read_obj_groups(self.scene.source.path(&file)).map_err(|error| error.to_string())?;
         let Some(faces) = groups.get(name) else {

@@ -9,6 +9,7 @@ use nucleus_core::{
 use crate::animation::sin_cos_degrees;
 use crate::attributes::{Choice, Key, n_base, n_cloth, nucleus};
 use crate::graph::{Graph, NodeId};
+use crate::mesh::{area, is_open};
 
 use super::compiler::Compiler;
 use super::program::EvaluationInterval;
@@ -188,13 +189,13 @@ impl Compiler<'_> {
         let corners = |triangle: [u32; 3]| triangle.map(|k| surface.positions[k as usize] - middle);
         let volume: f64 =
             surface.faces.triangles().map(corners).map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0).sum();
-        let area = area(surface);
+        let area = area(&surface.faces, &surface.positions);
         // A sphere has 0.094.
         let is_flat = volume.abs() < 1e-4 * area.powf(1.5);
         let attribute = if is_manual { &n_cloth::PRESSURE.row } else { &n_cloth::PRESSURE_METHOD.row };
         let name = node.name();
         let (message, help) = match is_manual {
-            true if is_open(surface) => (
+            true if is_open(&surface.faces) => (
                 format!(
                     "`{name}` has open edges: pressure set by hand pushes its faces along their normals, and the whole of it \
                      away"
@@ -218,22 +219,4 @@ impl Compiler<'_> {
         let place = self.scene.source.place(&format!("{name}.{}", attribute.name));
         self.findings.warning(&place, message).help(help);
     }
-}
-
-/// Whether an edge of a surface belongs to one face only.
-fn is_open(surface: &Surface) -> bool {
-    let sides = |face: &[u32]| {
-        let next = face.iter().cycle().skip(1);
-        let side = |(&a, &b): (&u32, &u32)| [a.min(b), a.max(b)];
-        face.iter().zip(next).map(side).collect::<Vec<_>>()
-    };
-    let mut edges: Vec<[u32; 2]> = surface.faces.iter().flat_map(sides).collect();
-    edges.sort_unstable();
-    edges.chunk_by(|a, b| a == b).any(|uses| uses.len() == 1)
-}
-
-/// Area of a surface in the square of its unit.
-pub(super) fn area(surface: &Surface) -> f64 {
-    let corners = |triangle: [u32; 3]| triangle.map(|k| surface.positions[k as usize]);
-    surface.faces.triangles().map(corners).map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum()
 }

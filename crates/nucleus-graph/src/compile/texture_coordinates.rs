@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::attributes::{mesh, n_base, poly_plane};
+use crate::attributes::{mesh, n_base};
 use crate::graph::Node;
-use crate::mesh::{CornerUvs, MeshFile, MeshFormat, poly_plane_uvs, read_obj_corner_uvs};
+use crate::mesh::{CornerUvs, MeshFile, MeshFormat, read_obj_corner_uvs};
 use crate::scene::document::Scene;
 
-use super::animated_mesh::NumberedFile;
+use super::geometry::{file_of, plane_uvs};
 use super::mesh_files::frames_of;
 use super::program::{Object, Program};
 
@@ -37,18 +37,10 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
 
 /// The texture coordinates of a mesh node. Files are read again.
 pub(super) fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
-    if node.node_type() == &poly_plane::POLY_PLANE {
-        use poly_plane::{SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH};
-        let [across, along] =
-            [&SUBDIVISIONS_WIDTH, &SUBDIVISIONS_HEIGHT].map(|key| u32::try_from(node.get(key)).unwrap_or(1));
-        return Some((poly_plane_uvs((across, along)), Vec::new()));
+    if let Some(uvs) = plane_uvs(node) {
+        return Some((uvs, Vec::new()));
     }
-    if node.node_type() != &mesh::MESH {
-        return None;
-    }
-    let file = node.get(&mesh::FILE);
-    let file = NumberedFile::new(&file).map_or(file.clone(), |numbered| numbered.at(scene.time.start));
-    let path = scene.source.path(&file);
+    let path = scene.source.path(&file_of(scene, node)?);
     match MeshFormat::of(&path) {
         MeshFormat::Obj => read_obj_corner_uvs(path).ok().flatten(),
         _ => {

@@ -6,6 +6,7 @@ use nucleus_core::{Elements, MAX_COORDINATE, PushOut, SelfCollision, Surface};
 
 use crate::attributes::{Choice, Key, n_base, n_cloth, n_particle, nucleus};
 use crate::graph::NodeId;
+use crate::mesh::bounding_box;
 
 use super::compiler::Compiler;
 use super::program::EvaluationInterval;
@@ -57,9 +58,8 @@ pub(super) fn default_thickness(surface: &Surface, share: f64) -> f64 {
 
 /// Surface area of the bounding box.
 fn bounding_box_area(positions: &[Vector3<f64>]) -> f64 {
-    let Some(&first) = positions.first() else { return 0.0 };
-    let low = positions.iter().fold(first, |low, p| low.inf(p));
-    let size = positions.iter().fold(first, |high, p| high.sup(p)) - low;
+    let [low, high] = bounding_box(positions);
+    let size = high - low;
     2.0 * (size.x * size.y + size.y * size.z + size.z * size.x)
 }
 

@@ -7,6 +7,7 @@ use crate::attributes::{Painting, Value, n_base, n_cloth, point_emitter, surface
 use crate::compile::compiler::Compiler;
 use crate::compile::sources::EmittingMesh;
 use crate::graph::{EvalContext, NodeId};
+use crate::mesh::doubled_area;
 use crate::paint::Texture;
 
 use super::random::Random;
@@ -177,10 +178,4 @@ impl Patches {
 fn flat(random: &mut Random) -> Vec3 {
     let (sin, cos) = sin_cos_degrees(random.between(0.0, 360.0));
     Vec3::new(cos, sin, 0.0)
-}
-
-/// A vector along the normal of a triangle, of twice its area.
-fn doubled_area(points: &[Vec3], corners: [u32; 3]) -> Vec3 {
-    let [a, b, c] = corners.map(|corner| points[corner as usize]);
-    (b - a).cross(&(c - a))
 }
