@@ -81,11 +81,13 @@ fn each_file<R: Read + Seek>(
     Ok(())
 }
 
-/// `0012` for the end of frame 12, `0012_2of4` for a substep after it: file names sort in order of time.
+/// `0012` for the end of frame 12, `0012_02of10` for a substep after it: from frame 0 on, file names sort in order of time.
 pub(crate) fn numbered(sample: &Sample) -> String {
+    let Sample { frame, substep, substeps, .. } = *sample;
+    let digits = substeps.to_string().len();
     match sample.ends_frame() {
-        true => format!("{:04}", sample.frame),
-        false => format!("{:04}_{}of{}", sample.frame - 1, sample.substep, sample.substeps),
+        true => format!("{frame:04}"),
+        false => format!("{:04}_{substep:0digits$}of{substeps}", frame - 1),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Maya's nCache: an XML description, and per sample a big-endian file of nested blocks.
 //!
-//! Time is counted in ticks of 1/6000 s. The layout is that of caches written by Maya.
+//! Time is counted in ticks, of which a frame has a whole number: 1/6000 s each, or nearly so at rates such as 29.97. The
+//! layout is that of caches written by Maya.
 
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -31,7 +32,7 @@ pub(crate) fn write<R: Read + Seek>(
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
     let names = node_names(clip.objects().map(|object| object.name.as_str()));
-    let per_frame = ticks(1.0, clip.fps());
+    let per_frame = ticks_per_frame(clip.fps());
     for object in 0..names.len() {
         // Each file states the number of particles, so that number may change.
         if clip.objects().nth(object).is_some_and(|object| object.kind != ObjectKind::Particles) {
@@ -40,7 +41,7 @@ pub(crate) fn write<R: Read + Seek>(
     }
     for index in 0..clip.samples().len() {
         let sample = clip.samples()[index];
-        let tick = ticks(sample.frame_time, clip.fps());
+        let tick = ticks(sample.frame_time, per_frame);
         for (object, name) in names.iter().enumerate() {
             let file = format!("{name}{}.{}", numbered(&sample, tick, per_frame), width.end());
             let mut file = output.file(folder.join(file))?;
@@ -58,8 +59,13 @@ pub(crate) fn write<R: Read + Seek>(
     Ok(())
 }
 
-fn ticks(frames: f64, fps: f64) -> i32 {
-    (frames * TICKS_PER_SECOND / fps).round() as i32
+/// A description states the ticks of a frame as a whole number, so frames must lie at its multiples.
+fn ticks_per_frame(fps: f64) -> i32 {
+    (TICKS_PER_SECOND / fps).round().max(1.0) as i32
+}
+
+fn ticks(frames: f64, per_frame: i32) -> i32 {
+    (frames * f64::from(per_frame)).round() as i32
 }
 
 /// `Frame12` at the end of a frame, `Frame11Tick125` halfway to it.
@@ -93,12 +99,9 @@ fn channels<R: Read + Seek>(
 }
 
 fn description<R: Read + Seek>(clip: &Clip<R>, channels: &[Channel], width: Width, per_frame: i32) -> String {
-    let samples = clip.samples();
-    let [first, last] =
-        [samples[0], samples[samples.len() - 1]].map(|sample| ticks(sample.frame_time, clip.fps()));
-    let steps = samples.windows(2).map(|pair| ticks(pair[1].frame_time - pair[0].frame_time, clip.fps()));
-    let rate = steps.min().unwrap_or(per_frame);
-    let sampling = if clip.uneven_sample().is_some() { "Irregular" } else { "Regular" };
+    let ticks: Vec<i32> = clip.samples().iter().map(|sample| ticks(sample.frame_time, per_frame)).collect();
+    let (first, last) = (ticks[0], ticks[ticks.len() - 1]);
+    let (sampling, rate) = sampling(&ticks, per_frame);
     let lines = channels.iter().enumerate().map(|(index, (name, holds, kind))| {
         format!(
             "    <channel{index} ChannelName=\"{name}\" ChannelType=\"{holds}\" ChannelInterpretation=\"{kind}\" \
@@ -113,6 +116,13 @@ fn description<R: Read + Seek>(clip: &Clip<R>, channels: &[Channel], width: Widt
         width.word(),
         lines.collect::<String>(),
     )
+}
+
+/// The type and the rate of the sampling: the distance of neighbouring samples in ticks, the least one if it varies.
+fn sampling(ticks: &[i32], per_frame: i32) -> (&'static str, i32) {
+    let steps = || ticks.windows(2).map(|pair| pair[1] - pair[0]);
+    let (least, most) = (steps().min().unwrap_or(per_frame), steps().max().unwrap_or(per_frame));
+    (if least == most { "Regular" } else { "Irregular" }, least)
 }
 
 /// The time of a file and the width of its length fields.
@@ -263,7 +273,17 @@ mod tests {
     }
 
     #[test]
-    fn a_tick_is_a_six_thousandth_of_a_second() {
-        assert_eq!((ticks(1.0, 24.0), ticks(3.0, 24.0), ticks(-1.0, 30.0)), (250, 750, -200));
+    fn frames_lie_at_multiples_of_the_ticks_of_a_frame() {
+        for (fps, per_frame) in [(24.0, 250), (30.0, 200), (23.976, 250), (29.97, 200), (59.94, 100)] {
+            assert_eq!(ticks_per_frame(fps), per_frame, "{fps}");
+        }
+        assert_eq!((ticks(1.0, 250), ticks(-1.0, 200), ticks(2.5, 250)), (250, -200, 625));
+    }
+
+    #[test]
+    fn sampling_is_regular_if_all_steps_are_the_same_number_of_ticks() {
+        assert_eq!(sampling(&[250, 375, 500], 250), ("Regular", 125));
+        assert_eq!(sampling(&[83, 167, 250], 250), ("Irregular", 83));
+        assert_eq!(sampling(&[500], 250), ("Regular", 250));
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use nucleus_cache::Playback;
 use nucleus_interop::{ExportError, Exported, Format, Request, Selection, export};
-use sample::{END, START, UNITS};
+use sample::{END, START, UNITS, Variant};
 use tempfile::TempDir;
 
 const SHEET: &str = "ns:sheet|1";
@@ -201,6 +201,38 @@ fn an_ncache_has_a_file_for_each_frame_and_names_its_channels() {
     }
     let bytes = fs::read(out.join("ns_sheet_1Frame9.mc")).unwrap();
     assert_eq!(floats(&bytes[bytes.len() - 12 * POINTS..], f32::from_be_bytes), sheet(9));
+}
+
+#[test]
+fn an_ncache_has_whole_ticks_per_frame_whatever_the_rate() {
+    for (fps, per_frame) in [(23.976, 250), (29.97, 200), (59.94, 100)] {
+        let write = |path: &Path| sample::record(path, Variant { fps, ..Variant::default() });
+        let (_folder, out, exported) = try_export(write, Format::Mc, Selection::default());
+        exported.unwrap();
+        let text = fs::read_to_string(out.join("dust.xml")).unwrap();
+        assert!(text.contains(&format!("TimePerFrame=\"{per_frame}\"")), "{fps}: {text}");
+        assert!(text.contains(&format!("SamplingType=\"Regular\" SamplingRate=\"{per_frame}\"")), "{text}");
+        let tick = i32::from_be_bytes(
+            fs::read(out.join(format!("dustFrame{END}.mc"))).unwrap()[32..36].try_into().unwrap(),
+        );
+        assert_eq!(tick, per_frame * END, "{fps}");
+    }
+}
+
+#[test]
+fn substeps_of_unequal_ticks_are_irregular_and_their_file_names_sort_in_order_of_time() {
+    let write = |path: &Path| sample::record(path, Variant { substeps: 12, ..Variant::default() });
+    let substeps = Selection { substeps: true, ..Selection::default() };
+    let (_folder, out, exported) = try_export(write, Format::Mc, substeps.clone());
+    exported.unwrap();
+    let text = fs::read_to_string(out.join("dust.xml")).unwrap();
+    assert!(text.contains("SamplingType=\"Irregular\" SamplingRate=\"20\""), "{text}");
+    let (_folder, _, exported) = try_export(write, Format::Obj, substeps);
+    let files = exported.unwrap().files;
+    let names: Vec<&PathBuf> =
+        files.iter().filter(|file| file.to_string_lossy().contains("/dust.")).collect();
+    assert_eq!(names.len(), 1 + 12 * (END - START) as usize);
+    assert!(names.is_sorted(), "{names:?}");
 }
 
 #[test]

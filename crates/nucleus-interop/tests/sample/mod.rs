@@ -9,7 +9,7 @@ use nucleus_cache::{
     Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Recorder, RunInfo, Source,
     TextureCoordinates,
 };
-use nucleus_core::{ClothId, ColliderId, StateView, StepObserver, SubstepIndex};
+use nucleus_core::{ClothId, ColliderId, ParticleLook, StateView, StepObserver, SubstepIndex};
 
 pub const START: i32 = 3;
 pub const END: i32 = 12;
@@ -25,22 +25,48 @@ const CART: ColliderId = ColliderId(0);
 /// The first frame after the tear of a sheet that tears.
 pub const TORN: i32 = 8;
 
+/// Variants of the run.
+#[derive(Debug, Clone, Copy)]
+pub struct Variant {
+    /// The sheet tears: it gains a point, and its faces change.
+    pub tears: bool,
+    /// Frames per second.
+    pub fps: f64,
+    /// Substeps of a frame.
+    pub substeps: u32,
+    pub units_per_metre: f64,
+    /// Name of the wall.
+    pub wall: &'static str,
+    /// Each particle of the dust has a look of its own.
+    pub looks: bool,
+}
+
+impl Default for Variant {
+    fn default() -> Self {
+        let (fps, substeps, units_per_metre) = (24.0, SUBSTEPS, UNITS);
+        Self { tears: false, fps, substeps, units_per_metre, wall: "wall", looks: false }
+    }
+}
+
 /// Writes the sample as a cache of substeps.
 pub fn write(path: &Path) {
-    record(path, false);
+    record(path, Variant::default());
 }
 
 /// The same, with a sheet that tears: it gains a point, and its faces change.
 pub fn write_torn(path: &Path) {
-    record(path, true);
+    record(path, Variant { tears: true, ..Variant::default() });
 }
 
-fn record(path: &Path, tears: bool) {
+/// Writes a variant of the sample.
+pub fn record(path: &Path, variant: Variant) {
     let run = RunInfo {
         scene_path: "scenes/\"sample\".ron".to_owned(),
         start: START,
         end: END,
-        units_per_metre: UNITS,
+        units_per_metre: variant.units_per_metre,
+        frames_per_second: variant.fps,
+        looks: variant.looks,
         detail: Detail::Substeps,
         velocities: true,
         rotation: true,
@@ -58,18 +84,18 @@ fn record(path: &Path, tears: bool) {
             .into(),
         ..RunInfo::default()
     };
-    let mut recorder = Recorder::create(path, &run, objects()).unwrap();
-    recorder.record_start(&State { frame: START, time: 0.0, tears }).unwrap();
+    let mut recorder = Recorder::create(path, &run, objects(variant.wall)).unwrap();
+    recorder.record_start(&State { frame: START, time: 0.0, variant }).unwrap();
     for frame in START + 1..=END {
         let mut observer = recorder.frame(frame).unwrap();
-        for substep in 1..=SUBSTEPS {
-            let time = (frame - START - 1) as f32 + substep as f32 / SUBSTEPS as f32;
-            let moment = SubstepIndex { substep, substeps: SUBSTEPS };
-            if tears && (frame, substep) == (TORN, 1) {
+        for substep in 1..=variant.substeps {
+            let time = (frame - START - 1) as f32 + substep as f32 / variant.substeps as f32;
+            let moment = SubstepIndex { substep, substeps: variant.substeps };
+            if variant.tears && (frame, substep) == (TORN, 1) {
                 let rest = torn(positions("ns:sheet|1", 0.0));
                 observer.change_mesh(moment, "ns:sheet|1", torn_faces().iter().copied().collect(), rest);
             }
-            observer.substep(moment, &State { frame, time, tears });
+            observer.substep(moment, &State { frame, time, variant });
         }
         recorder.end_frame(&()).unwrap();
     }
@@ -101,7 +127,7 @@ pub fn positions(object: &str, time: f32) -> Vec<[f32; 3]> {
     metres.into_iter().map(|point| point.map(|x| x * units)).collect()
 }
 
-pub fn objects() -> Vec<(Source, ObjectInfo)> {
+pub fn objects(wall: &str) -> Vec<(Source, ObjectInfo)> {
     let object = |name: &str, kind, faces: &[&[u32]]| ObjectInfo {
         name: name.to_owned(),
         kind,
@@ -110,12 +136,15 @@ pub fn objects() -> Vec<(Source, ObjectInfo)> {
     };
     let sheet: &[&[u32]] = &[&[0, 1, 4, 3], &[1, 2, 5], &[1, 5, 4], &[3, 4, 5, 8, 7, 6]];
     let cart: &[&[u32]] = &[&[0, 1, 2, 3, 4]];
-    let wall: &[&[u32]] = &[&[0, 1, 2, 3]];
+    let quad: &[&[u32]] = &[&[0, 1, 2, 3]];
     vec![
         (Source::Cloth(SHEET), object("ns:sheet|1", ObjectKind::Cloth, sheet)),
         (Source::Cloth(ClothId(1)), object("dust", ObjectKind::Particles, &[])),
         (Source::Collider(CART), object("1 cart", ObjectKind::Collider, cart)),
-        (Source::Collider(ColliderId(1)), object("wall", ObjectKind::Collider, wall)),
+        (
+            Source::Collider(ColliderId(1)),
+            ObjectInfo { name: wall.to_owned(), ..object("wall", ObjectKind::Collider, quad) },
+        ),
     ]
 }
 
@@ -140,6 +169,17 @@ pub fn turns(time: f32) -> Vec<[f32; 4]> {
     (0..5u8).map(|k| (0.1 * time * f32::from(k)).sin_cos()).map(|(sin, cos)| [0.0, sin, 0.0, cos]).collect()
 }
 
+/// The looks of the dust.
+pub fn looks(time: f32) -> Vec<ParticleLook> {
+    let look = |k: u8| ParticleLook {
+        radius: 0.5 + 0.5 * f32::from(k),
+        opacity: 0.2 * f32::from(k),
+        color: Some([0.125 * f32::from(k), 0.5, 0.0625 * time]),
+        incandescence: [0.0; 3],
+    };
+    (0..5).map(look).collect()
+}
+
 fn dust(time: f32) -> Vec<[f32; 3]> {
     (0..5u8).map(|k| [f32::from(k), 3.0 - 0.01 * time * time, f32::from(k * k) + 0.1 * time]).collect()
 }
@@ -157,7 +197,7 @@ fn wall() -> Vec<[f32; 3]> {
 struct State {
     frame: i32,
     time: f32,
-    tears: bool,
+    variant: Variant,
 }
 
 impl StateView for State {
@@ -165,9 +205,13 @@ impl StateView for State {
         out.clear();
         out.extend((cloth != SHEET).then(|| turns(self.time)).into_iter().flatten());
     }
+    fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {
+        out.clear();
+        out.extend((self.variant.looks && cloth != SHEET).then(|| looks(self.time)).into_iter().flatten());
+    }
     fn positions(&self, cloth: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = positions(if cloth == SHEET { "ns:sheet|1" } else { "dust" }, self.time);
-        if cloth == SHEET && self.tears && self.frame >= TORN {
+        if cloth == SHEET && self.variant.tears && self.frame >= TORN {
             *out = torn(std::mem::take(out));
         }
     }
