@@ -5,6 +5,7 @@ use std::io::{Read, Seek};
 use nucleus_cache::{
     Camera, CameraView, LiquidSurface, ObjectInfo, ObjectKind, Playback, TextureCoordinates,
 };
+use nucleus_core::ParticleLook;
 
 use crate::error::ExportError;
 
@@ -164,6 +165,14 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         self.cache.run().radii.get(&self.object(object).name).map(|radius| radius * self.scale)
     }
 
+    /// The looks of an object's particles at a sample; `None` where they all look the same.
+    ///
+    /// # Errors
+    /// When the frame is damaged.
+    pub fn looks(&mut self, object: usize, sample: usize) -> Result<Option<Vec<ParticleLook>>, ExportError> {
+        Ok(self.cache.looks(self.objects[object], self.samples[sample].moment)?)
+    }
+
     /// The texture coordinates of an object; they fit its first mesh.
     pub fn texture_coordinates(&self, object: usize) -> Option<&TextureCoordinates> {
         let info = self.object(object);
@@ -210,6 +219,14 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     /// Scene units per metre.
     pub fn units_per_metre(&self) -> f64 {
         self.cache.run().units_per_metre
+    }
+
+    /// Metres per scene unit. The reciprocal of a rounded reciprocal may be off in its last digit, so the shorter number is
+    /// taken if both have the same reciprocal.
+    pub fn metres_per_unit(&self) -> f64 {
+        let units = self.units_per_metre();
+        let short: f64 = format!("{:.12e}", 1.0 / units).parse().unwrap_or(1.0 / units);
+        if 1.0 / short == units { short } else { 1.0 / units }
     }
 
     /// A title that names the scene.

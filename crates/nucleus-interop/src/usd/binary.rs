@@ -223,6 +223,10 @@ impl BinaryStage {
             }
             Value::Text(text) => inlined(Type::String, self.string(text)),
             Value::Float(x) => inlined(Type::Float, x.to_bits()),
+            Value::Vec2(v) => {
+                let bytes: Vec<u8> = v.iter().flat_map(|x| x.to_le_bytes()).collect();
+                rep(Type::Vec2f, self.place(&bytes))
+            }
             Value::Vec3(v) => {
                 let bytes: Vec<u8> = v.iter().flat_map(|x| x.to_le_bytes()).collect();
                 rep(Type::Vec3f, self.place(&bytes))

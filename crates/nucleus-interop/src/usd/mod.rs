@@ -2,6 +2,7 @@
 //! cameras of the run.
 
 use std::io::{Read, Seek};
+use std::iter;
 use std::path::Path;
 
 use nucleus_cache::{ObjectInfo, ObjectKind};
@@ -13,15 +14,23 @@ use crate::normals::normals;
 use crate::output::{Output, node_names};
 
 use binary::BinaryStage;
+use camera::write_camera;
+use particles::{extent_of_particles, have_looks, write_looks, write_orientations, write_widths};
 use stage::{Attribute, Head, Prim, Stage, Value};
 use text::TextStage;
 
 mod binary;
+mod camera;
+mod particles;
 mod stage;
 mod text;
 
-/// The scope of the materials.
+/// The scope of the materials beside the objects, and its path.
+const SCOPE: &str = "materials";
 const MATERIALS: &str = "/run/materials";
+
+/// Lowest and highest corner of a bounding box.
+type Extent = [[f32; 3]; 2];
 
 /// Writes one scene as text.
 pub(crate) fn write_text<R: Read + Seek>(
@@ -52,43 +61,44 @@ fn write<R: Read + Seek>(
     stage: &mut impl Stage,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    let names = node_names(
-        clip.objects()
-            .map(|object| object.name.as_str())
-            .chain(clip.cameras().iter().map(|camera| camera.name.as_str())),
-    );
-    let (objects, cameras) = names.split_at(clip.objects().len());
+    // The scope comes first, so that an object of its name gets another one.
+    let objects = clip.objects().map(|object| object.name.as_str());
+    let cameras = clip.cameras().iter().map(|camera| camera.name.as_str());
+    let names = node_names(iter::once(SCOPE).chain(objects).chain(cameras));
+    let (objects, cameras) = names[1..].split_at(clip.objects().len());
     let samples = clip.samples();
     stage.head(&Head {
         title: clip.title(),
-        metres_per_unit: 1.0 / clip.units_per_metre(),
+        metres_per_unit: clip.metres_per_unit(),
         times: [samples[0].frame_time, samples[samples.len() - 1].frame_time],
         fps: clip.fps(),
     });
     stage.begin(&Prim { kind: Some("component"), ..Prim::of("Xform", "run") });
+    let mut extents = Vec::new();
     for (object, name) in objects.iter().enumerate() {
         let done = object as f64 / objects.len() as f64;
         let mut progress = |share: f64| progress(done + share / objects.len() as f64);
-        write_object(clip, object, name, stage, &mut progress)?;
+        extents.extend(write_object(clip, object, name, stage, &mut progress)?);
         if stage.has_failed() {
             break; // `finish` reports the error
         }
     }
     for (camera, name) in cameras.iter().enumerate() {
-        write_camera(clip, camera, name, stage);
+        write_camera(clip, camera, name, &extent(extents.as_flattened()), stage);
     }
     write_materials(clip, objects, stage);
     stage.end();
     Ok(())
 }
 
+/// Writes an object; returns its extent at each sample.
 fn write_object<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     name: &str,
     stage: &mut impl Stage,
     progress: &mut dyn FnMut(f64),
-) -> Result<(), ExportError> {
+) -> Result<Vec<Extent>, ExportError> {
     let changes = !clip.mesh_changes(object).is_empty();
     let info = clip.object(object);
     let is_mesh = !info.faces.is_empty() || changes && info.kind != ObjectKind::Particles;
@@ -96,17 +106,22 @@ fn write_object<R: Read + Seek>(
     stage.begin(&Prim { schemas: &["MaterialBindingAPI"], ..prim });
     let title = Value::Text(&info.name);
     stage.attribute(&Attribute { is_custom: true, ..Attribute::of("string", "nucleus:name") }, &title);
-    stage.relate("material:binding", &format!("{MATERIALS}/{name}"));
+    let have_looks = !is_mesh && have_looks(clip, object)?;
+    // A material would hide the colours of the particles.
+    if !have_looks {
+        stage.relate("material:binding", &format!("{MATERIALS}/{name}"));
+    }
     // Particles that come and go have no constant list of ids.
     if clip.count_change(object)?.is_none() {
         write_topology(clip, object, is_mesh, stage)?;
     }
     if is_mesh {
         write_texture_coordinates(clip, object, changes, stage);
-    } else if let Some(radius) = clip.radius(object) {
-        // USD states the diameter of a particle: twice its radius.
-        let widths = Value::Floats(&[(2.0 * radius) as f32]);
-        stage.attribute(&Attribute::of("float[]", "widths").interpolated("constant"), &widths);
+    } else {
+        write_widths(clip, object, have_looks, stage)?;
+    }
+    if have_looks {
+        write_looks(clip, object, stage)?;
     }
     let samples = clip.samples().to_vec();
     let steps = samples.len() as f64;
@@ -115,7 +130,10 @@ fn write_object<R: Read + Seek>(
     for (index, sample) in samples.iter().enumerate() {
         let positions = clip.positions(object, index)?;
         stage.sample(sample.frame_time, &Value::Vec3s(&positions));
-        extents.push(extent(&positions));
+        extents.push(match is_mesh {
+            true => extent(&positions),
+            false => extent_of_particles(clip, object, index, &positions)?,
+        });
         progress(0.5 * (index + 1) as f64 / steps);
     }
     stage.end_samples();
@@ -137,7 +155,7 @@ fn write_object<R: Read + Seek>(
     write_orientations(clip, object, stage)?;
     write_velocities(clip, object, stage)?;
     stage.end();
-    Ok(())
+    Ok(extents)
 }
 
 /// Writes the topology: once, or at each sample at which it changes. USD holds such values until the next sample.
@@ -208,27 +226,6 @@ fn write_texture_coordinates<R: Read + Seek>(
     }
 }
 
-/// Writes the orientations of particles that rotate, as the primvar that instancers read.
-fn write_orientations<R: Read + Seek>(
-    clip: &mut Clip<R>,
-    object: usize,
-    stage: &mut impl Stage,
-) -> Result<(), ExportError> {
-    let mut begins = true;
-    for index in 0..clip.samples().len() {
-        // Particles that are yet to be born have none.
-        let Some(orientations) = clip.orientations(object, index)? else { continue };
-        if std::mem::take(&mut begins) {
-            stage.begin_samples(&Attribute::of("quatf[]", "primvars:orient").interpolated("vertex"));
-        }
-        stage.sample(clip.samples()[index].frame_time, &Value::Quaternions(&orientations));
-    }
-    if !begins {
-        stage.end_samples();
-    }
-    Ok(())
-}
-
 fn write_velocities<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
@@ -250,33 +247,9 @@ fn write_velocities<R: Read + Seek>(
     Ok(())
 }
 
-/// A camera with its motion. USD's focal length and apertures have one unit; only their ratios matter.
-fn write_camera<R: Read + Seek>(clip: &Clip<R>, camera: usize, name: &str, stage: &mut impl Stage) {
-    const MILLIMETRES: f32 = 25.4;
-    stage.begin(&Prim::of("Camera", name));
-    let views: Vec<_> = (0..clip.samples().len()).map(|sample| clip.camera_view(camera, sample)).collect();
-    let first = &views[0];
-    stage
-        .attribute(&Attribute::of("float", "horizontalAperture"), &Value::Float(first.film[0] * MILLIMETRES));
-    stage.attribute(&Attribute::of("float", "verticalAperture"), &Value::Float(first.film[1] * MILLIMETRES));
-    let samples = clip.samples();
-    stage.begin_samples(&Attribute::of("float", "focalLength"));
-    for (sample, view) in samples.iter().zip(&views) {
-        stage.sample(sample.frame_time, &Value::Float(view.focal_length));
-    }
-    stage.end_samples();
-    stage.attribute(&Attribute::uniform("token[]", "xformOpOrder"), &Value::Tokens(&["xformOp:transform"]));
-    stage.begin_samples(&Attribute::of("matrix4d", "xformOp:transform"));
-    for (sample, view) in samples.iter().zip(&views) {
-        stage.sample(sample.frame_time, &Value::Matrix(view.matrix()));
-    }
-    stage.end_samples();
-    stage.end();
-}
-
 /// A preview surface for each object, in the colour that the player gives it.
 fn write_materials<R: Read + Seek>(clip: &Clip<R>, objects: &[String], stage: &mut impl Stage) {
-    stage.begin(&Prim::of("Scope", "materials"));
+    stage.begin(&Prim::of("Scope", SCOPE));
     let colours = materials::colours(clip.objects().map(|object| object.kind));
     for (name, colour) in objects.iter().zip(colours) {
         let shader = format!("{MATERIALS}/{name}/surface");

@@ -57,6 +57,7 @@ pub(super) enum Value<'a> {
     Tokens(&'a [&'a str]),
     Text(&'a str),
     Float(f32),
+    Vec2([f32; 2]),
     Vec3([f32; 3]),
     Matrix([[f64; 4]; 4]),
     Ints(&'a [u32]),

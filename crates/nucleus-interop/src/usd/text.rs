@@ -55,6 +55,7 @@ impl TextStage {
             Value::Tokens(tokens) => self.list(tokens.iter().map(|token| format!("\"{token}\""))),
             Value::Text(text) => self.file.text(quoted(text)),
             Value::Float(x) => self.file.text(x.to_string()),
+            Value::Vec2(v) => self.file.text(tuple(v)),
             Value::Vec3(v) => self.file.text(tuple(v)),
             Value::Matrix(rows) => self.file.text(format!("({})", rows.map(|row| tuple(&row)).join(", "))),
             Value::Ints(values) | Value::Int64s(values) => self.list(values.iter()),
