@@ -11,10 +11,12 @@ use crate::ascii::ImportError;
 const MAX_BYTES: u64 = 4 << 30;
 
 /// A cache: its samples in the order of time.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct NCache {
     /// The samples.
     pub samples: Vec<CacheSample>,
+    /// Ticks of a frame, in which the samples state their times.
+    ticks_per_frame: f64,
 }
 
 /// All channels at one time.
@@ -63,9 +65,9 @@ impl NCache {
         } else {
             (vec![path.to_owned()], 250.0)
         };
-        let mut cache = Self::default();
+        let mut cache = Self { samples: Vec::new(), ticks_per_frame: ticks };
         for file in files {
-            cache.add(&file, ticks)?;
+            cache.add(&file)?;
         }
         cache.samples.sort_by(|a, b| a.frame.total_cmp(&b.frame));
         Ok(cache)
@@ -82,9 +84,15 @@ impl NCache {
         names
     }
 
-    /// The positions of an object at a frame; `None` if the cache has none there.
+    /// The sample at a frame, to half a tick: times are whole ticks, and a fraction of a frame need not be. `None` if there
+    /// is none.
+    pub fn sample_at(&self, frame: f64) -> Option<&CacheSample> {
+        self.samples.iter().find(|sample| (sample.frame - frame).abs() * self.ticks_per_frame <= 0.5)
+    }
+
+    /// The positions of an object at a frame, to half a tick; `None` if the cache has none there.
     pub fn positions(&self, object: &str, frame: f64) -> Option<&[[f64; 3]]> {
-        let sample = self.samples.iter().find(|sample| sample.frame == frame)?;
+        let sample = self.sample_at(frame)?;
         let channel = sample.channels.iter().find(|channel| channel.object() == Some(object))?;
         match &channel.data {
             ChannelData::Vectors(vectors) => Some(vectors),
@@ -92,21 +100,28 @@ impl NCache {
         }
     }
 
+    /// The time of a tick in frames; a whole number within half a tick of it, where a frame has no whole number of ticks.
+    fn frame_at(&self, tick: f64) -> f64 {
+        let frame = tick / self.ticks_per_frame;
+        let is_whole = (frame - frame.round()).abs() * self.ticks_per_frame <= 0.5;
+        if is_whole { frame.round() } else { frame }
+    }
+
     /// Adds the samples of a file.
-    fn add(&mut self, file: &Path, ticks: f64) -> Result<(), ImportError> {
+    fn add(&mut self, file: &Path) -> Result<(), ImportError> {
         let all = bytes(file)?;
         let cut = || malformed(file, "the file is cut off, or is no nCache");
         let mut reader = Reader::of(&all).ok_or_else(cut)?;
         let mut tick = 0.0;
         while let Some(group) = reader.group() {
             let (kind, mut blocks) = group.ok_or_else(cut)?;
-            let mut sample = CacheSample { frame: tick / ticks, channels: Vec::new() };
+            let mut sample = CacheSample { frame: self.frame_at(tick), channels: Vec::new() };
             let mut name = String::new();
             while let Some(block) = blocks.block() {
                 let (tag, data) = block.ok_or_else(cut)?;
                 match &tag {
                     b"STIM" if &kind == b"CACH" => tick = f64::from(whole(data).ok_or_else(cut)?),
-                    b"TIME" => sample.frame = f64::from(whole(data).ok_or_else(cut)?) / ticks,
+                    b"TIME" => sample.frame = self.frame_at(f64::from(whole(data).ok_or_else(cut)?)),
                     b"CHNM" => name = String::from_utf8_lossy(data).trim_end_matches('\0').to_owned(),
                     b"FVCA" | b"DVCA" | b"DBLA" | b"FBCA" => {
                         sample
@@ -339,6 +354,27 @@ mod tests {
             assert_eq!(one.positions("p", 3.0), None);
             std::fs::remove_file(folder.path().join(format!("one.{end}"))).unwrap();
         }
+    }
+
+    #[test]
+    fn a_sample_is_found_within_half_a_tick_of_its_frame() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+        let read = |ticks: &str| {
+            let xml = format!(
+                "<Autodesk_Cache_File>\n<cacheType Type=\"OneFile\" Format=\"mcc\"/>\n<cacheTimePerFrame TimePerFrame=\"{ticks}\"/>"
+            );
+            write("a.xml", xml.as_bytes());
+            NCache::read(&folder.path().join("a.xml")).unwrap()
+        };
+        write("a.mc", &file(false, &[(Some(333), 1.0), (Some(501), 2.0), (Some(751), 3.0)], 333));
+        let x = |cache: &NCache, frame: f64| cache.positions("p", frame).map(|points| points[0][0]);
+        let whole = read("250");
+        assert_eq!(x(&whole, 4.0 / 3.0), Some(1.0), "a third of a frame is no whole number of ticks");
+        assert_eq!([x(&whole, 2.0), x(&whole, 501.0 / 250.0)], [None, Some(2.0)], "a tick off");
+        let rounded = read("250.25");
+        assert_eq!([x(&rounded, 2.0), x(&rounded, 3.0)], [Some(2.0), Some(3.0)]);
+        assert_eq!(rounded.samples[2].frame, 3.0);
     }
 
     #[test]

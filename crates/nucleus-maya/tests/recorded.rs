@@ -109,6 +109,16 @@ fn a_cloth_plays_the_cache_that_lies_with_its_scene() {
 }
 
 #[test]
+fn frames_that_a_cache_does_not_have_are_simulated_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    cached_drape(folder.path());
+    let frames: Vec<_> = [101, 102, 105, 110].map(|frame| (frame, lifted(frame))).into();
+    write_cache(folder.path(), "show", "nClothShape1", &frames);
+    let said = import(folder.path(), "drape.ma", false).omissions.to_string();
+    assert!(said.contains("it plays frames 1 to 10 of `show`, but simulates 6 of these"), "{said}");
+}
+
+#[test]
 fn a_cloth_whose_cache_is_missing_or_of_another_mesh_is_simulated_and_listed() {
     let folder = tempfile::tempdir().unwrap();
     cached_drape(folder.path());

@@ -86,9 +86,13 @@ impl Importer<'_> {
         self.set(to, &n_base::CACHE_FILE.row, Setting::Fixed(file));
         self.set(to, &n_base::PLAY_FROM_CACHE.row, recorded.switch(self.frames[0]..=self.frames[1]));
         let [first, last] = recorded.ends();
+        let name = &recorded.name;
+        let without = match last + 1 - first - recorded.frames.len() as i64 {
+            0 => String::new(),
+            missing => format!(", but simulates {missing} of these, which the cache does not have"),
+        };
         Ok(Ok(format!(
-            "it plays frames {first} to {last} of `{}`; `nucleus import --simulate` solves it instead",
-            recorded.name
+            "it plays frames {first} to {last} of `{name}`{without}; `nucleus import --simulate` solves it instead",
         )))
     }
 
@@ -183,7 +187,7 @@ impl Importer<'_> {
             None => return None,
         };
         if scene.kind(object) == "nParticle" {
-            let sample = cache.samples.iter().find(|sample| sample.frame == at)?;
+            let sample = cache.sample_at(at)?;
             let data = |part: &str| {
                 let name = format!("{name}_{part}");
                 sample.channels.iter().find(|channel| channel.name == name).map(|channel| &channel.data)
