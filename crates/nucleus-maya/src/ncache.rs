@@ -10,6 +10,9 @@ use crate::ascii::ImportError;
 /// Largest file of a cache that is read, in bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
+/// Half a tick, with the rounding error of a time that lies exactly between two ticks.
+const HALF_TICK: f64 = 0.5 + 1e-6;
+
 /// A cache: its samples in the order of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NCache {
@@ -87,7 +90,7 @@ impl NCache {
     /// The sample at a frame, to half a tick: times are whole ticks, and a fraction of a frame need not be. `None` if there
     /// is none.
     pub fn sample_at(&self, frame: f64) -> Option<&CacheSample> {
-        self.samples.iter().find(|sample| (sample.frame - frame).abs() * self.ticks_per_frame <= 0.5)
+        self.samples.iter().find(|sample| (sample.frame - frame).abs() * self.ticks_per_frame <= HALF_TICK)
     }
 
     /// The positions of an object at a frame, to half a tick; `None` if the cache has none there.
@@ -103,7 +106,7 @@ impl NCache {
     /// The time of a tick in frames; a whole number within half a tick of it, where a frame has no whole number of ticks.
     fn frame_at(&self, tick: f64) -> f64 {
         let frame = tick / self.ticks_per_frame;
-        let is_whole = (frame - frame.round()).abs() * self.ticks_per_frame <= 0.5;
+        let is_whole = (frame - frame.round()).abs() * self.ticks_per_frame <= HALF_TICK;
         if is_whole { frame.round() } else { frame }
     }
 
