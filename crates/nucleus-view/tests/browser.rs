@@ -205,6 +205,50 @@ fn a_damaged_frame_is_named_and_the_others_play() {
     assert!(shown.page.contains(r#"data-frame="8""#), "{}", shown.page);
 }
 
+#[test]
+fn a_damaged_frame_of_an_incomplete_run_is_named_beside_its_frames() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample::default());
+    let mut bytes = std::fs::read(&path).unwrap();
+    let chunks = chunk_starts(&bytes);
+    bytes[chunks[6] + 2000] ^= 0xFF;
+    std::fs::write(&path, &bytes[..chunks[9]]).unwrap();
+    let shown = look(chromium, &path, "frame=7");
+    for notice in
+        ["The run is incomplete: frames 1 to 9 are shown.", "Frame 7: A frame of the file is damaged."]
+    {
+        assert!(shown.page.contains(notice), "{notice}: {}", shown.page);
+    }
+}
+
+#[test]
+fn particles_have_their_recorded_radius_and_colour() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let player = serve(written(folder.path(), Sample { dust: true, ..Sample::default() }), 0).unwrap();
+    let green = |shown: &Shown| shown.share(|[red, green, blue]| *green > 50 && *green / 2 > *red.max(blue));
+    let shown = look_until(&player, chromium, "frame=12", |shown| green(shown) > 0.01);
+    assert!(green(&shown) > 0.01, "{} of the screen is green", green(&shown));
+    let bright = shown.share(|[red, green, blue]| *green > 170 && *green / 2 > *red.max(blue));
+    assert!(bright == 0.0, "half transparent particles are dark before the background: {bright}");
+}
+
+#[test]
+fn a_tilted_ground_plane_is_drawn_as_it_is() {
+    let Some(chromium) = chromium() else { return };
+    let shown = |sample: Sample| {
+        let folder = tempfile::tempdir().unwrap();
+        let player = serve(written(folder.path(), sample), 0).unwrap();
+        look_until(&player, chromium, "frame=3", |shown| shown.page.contains("data-frame=\"3\""))
+    };
+    let level = shown(Sample::default());
+    let tilted = shown(Sample { plane: Some(0.0), tilt: 0.5, ..Sample::default() });
+    let differ = level.pixels.iter().zip(&tilted.pixels).filter(|(a, b)| a[0].abs_diff(b[0]) > 3).count();
+    let share = differ as f64 / level.pixels.len() as f64;
+    assert!(share > 0.1, "{share} of the screen differs from a level floor");
+}
+
 /// The offsets of the chunks of an MCAP file.
 fn chunk_starts(bytes: &[u8]) -> Vec<usize> {
     let mut starts = Vec::new();

@@ -1,7 +1,8 @@
 // A cache: the objects and frames of a run, and the state of all objects at any recorded time.
 
 import { openIndex } from "./mcap.js";
-import { readCameras, readContacts, readPoints, readTopology } from "./messages.js";
+import { planeAt, planeOf } from "./plane.js";
+import { readCameras, readContacts, readLooks, readPoints, readTopology } from "./messages.js";
 import { readChunk } from "./records.js";
 import { DamagedFrame, PlayerError } from "./source.js";
 
@@ -71,8 +72,9 @@ export class Cache {
     }
     const { frame, substep, substeps, time } = times[last];
     const contacts = this.objects.map((object) => times[last].contacts.get(object.contacts) ?? null);
+    const looks = this.objects.map((object) => times[last].looks.get(object.looks) ?? null);
     const at = { index, timeIndex: last, times: times.length, frame, substep, substeps, time };
-    return { ...at, report, positions, meshes, contacts };
+    return { ...at, report, positions, meshes, contacts, looks };
   }
 
   // Unpacks the next frames. A damaged frame is reported when it is shown.
@@ -149,7 +151,7 @@ export class Cache {
     const { messages } = await readChunk(this.source, chunk);
     const times = new Map(); // by nanoseconds
     const at = (time) => {
-      const entry = times.get(time) ?? { nanoseconds: time, positions: new Map(), contacts: new Map() };
+      const entry = times.get(time) ?? { nanoseconds: time, positions: new Map(), contacts: new Map(), looks: new Map() };
       times.set(time, entry);
       return entry;
     };
@@ -168,6 +170,10 @@ export class Cache {
       } else if (encoding === "nucleus.contacts.v1") {
         at(time).contacts.set(channel, readContacts(data));
         count(data.length);
+      } else if (encoding === "nucleus.looks.v1") {
+        const looks = readLooks(data);
+        at(time).looks.set(channel, looks);
+        count(looks.byteLength);
       } else if (encoding === "nucleus.topology.v1" && time > 0) {
         meshes.push({ channel, time, topology: this.topologyOf(channel, data) });
         count(data.length);
@@ -215,7 +221,7 @@ function objectsOf(channels) {
     .map(({ id, topic }) => {
       const name = topic.replace(/^\//, "").replace(/\/topology$/, "");
       const channel = (kind) => all.find((channel) => channel.topic === `/${name}/${kind}`)?.id;
-      return { name, mesh: id, points: channel("points"), contacts: channel("contacts") };
+      return { name, mesh: id, points: channel("points"), contacts: channel("contacts"), looks: channel("looks") };
     })
     .filter(({ points }) => points !== undefined);
 }
@@ -234,8 +240,8 @@ function readRun(metadata) {
     version: run.get("version") ?? "",
     scene: scene.get("path") ?? "",
     cameras: readCameras(metadata.get("nucleus.cameras")),
-    floor: levelPlane(run.get("ground")),
-    floors: (run.get("ground motion") ?? "").split("\n").map(levelPlane),
+    floor: planeOf(run.get("ground")),
+    floors: (run.get("ground motion") ?? "").split("\n").map(planeOf),
     radii: readRadii(run),
     selections: readSelections(metadata.get("nucleus.selections")),
   };
@@ -258,17 +264,10 @@ function readRadii(run) {
   return new Map(found.map(([key, text]) => [key.slice(before.length), Number(text)]));
 }
 
-// The height of the floor at a time in frames from the start, if the ground plane moves; linear between two frames.
+// The ground plane at a time in frames from the start, if it moves; linear between two frames.
 export function floorAt({ floors }, frames) {
   const place = Math.min(Math.max(frames, 0), floors.length - 1);
-  const [before, after] = [floors[Math.floor(place)], floors[Math.ceil(place)]];
-  return before === null || after === null ? null : before + (after - before) * (place % 1);
-}
-
-// The height of a plane, given as point and normal, if it is horizontal; else null.
-function levelPlane(text) {
-  const [, y, , a, b, c] = (text ?? "").split(" ").map(Number);
-  return Number.isFinite(y) && b > 0.999 * Math.hypot(a, b, c) ? y : null;
+  return planeAt(floors[Math.floor(place)], floors[Math.ceil(place)], place % 1);
 }
 
 // Figures that older caches hold under another name: former name to present name.

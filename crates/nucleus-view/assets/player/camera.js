@@ -62,6 +62,15 @@ export function viewAt({ views }, frames) {
   };
 }
 
+// Ratio of width to height of the pictures of `nucleus render`, unless it is given.
+const RENDERED = 16 / 9;
+
+// Tangent of half the vertical field of view in a window of any shape, which contains all that `nucleus render` shows.
+export function windowTangent(followed, fit, aspect) {
+  const rendered = tangentOf(followed, fit, RENDERED);
+  return Math.max(rendered, (rendered * RENDERED) / aspect);
+}
+
 // Tangent of half the vertical field of view, in a picture of this ratio of width to height.
 export function tangentOf({ focalLength, film }, fit, aspect) {
   const [across, upward] = film.map((side) => (0.5 * MILLIMETRES * side) / focalLength);
@@ -116,7 +125,7 @@ export class Camera {
     const far = Math.hypot(...subtract(this.target, followed.eye)) + this.size * 40;
     return {
       view: view(followed.eye, right, cross(toward, right), toward),
-      projection: perspective(tangentOf(followed, this.track.fit, aspect), aspect, this.size * 5e-3, far),
+      projection: perspective(windowTangent(followed, this.track.fit, aspect), aspect, this.size * 5e-3, far),
     };
   }
 
@@ -147,11 +156,16 @@ export class Camera {
     };
   }
 
+  // Sets the size of the box that is shown, to which the clipping planes and the zoom are fitted.
+  measure({ low, high }) {
+    this.size = Math.max(Math.hypot(...subtract(high, low)), 1e-6);
+  }
+
   // Sets target and distance so that the box fills the picture, also when the window changes its shape.
   frame({ low, high }, aspect) {
     this.track = null;
     this.target = scale(add(low, high), 0.5);
-    this.size = Math.max(Math.hypot(...subtract(high, low)), 1e-6);
+    this.measure({ low, high });
     this.framed = { low, high };
     this.fit(aspect);
     this.onChange();

@@ -9,7 +9,7 @@ import { UrlSource } from "./source.js";
 const INTERVAL = 400;
 const MAX_INTERVAL = 5000;
 
-const ask = () => fetch("/live.json").then((answer) => (answer.ok ? answer.json() : null)).catch(() => undefined);
+const ask = () => fetch("/live.json").then((answer) => (answer.status === 200 ? answer.json() : null)).catch(() => undefined);
 
 // Follows the runs of the server until the page closes. Resolves to false at once if nothing is watched.
 export async function follow(player) {
@@ -21,7 +21,7 @@ export async function follow(player) {
   for (;;) {
     const begun = performance.now();
     if (state === undefined) {
-      showNotice("The server no longer responds. Start `nucleus play` again.");
+      showNotice("run", "The server no longer responds. Start `nucleus play` again.");
     } else if (state) {
       shown = await update(player, state, shown);
     }
@@ -35,16 +35,18 @@ async function update(player, state, shown) {
   const source = await UrlSource.find(`/cache.mcap?run=${state.run}`);
   const isNew = state.run !== shown.run;
   const isDone = !state.solving && shown.solving;
-  if (source && (isNew || isDone || source.size !== shown.size)) {
+  // A run that has just begun has written nothing.
+  if (source?.size > 0 && (isNew || isDone || source.size !== shown.size)) {
     const cache = await Cache.open(source).catch(() => null); // before its first frame is complete
     if (cache) {
       await player.replace(cache, source.name, isNew);
+      showNotice("file", ""); // that it is incomplete is no news
       shown = { run: state.run, size: source.size, solving: state.solving };
     }
   }
   if (!player.timeline) {
     showState(state.message ? "error" : "loading", state.message || "Solving the first frame");
   }
-  showNotice(state.message || (state.solving ? "Solving" : ""));
+  showNotice("run", state.message || (state.solving ? "Solving" : ""));
   return shown;
 }

@@ -120,8 +120,8 @@ async function copyLink(player) {
   const link = linkTo(player);
   history.replaceState(null, "", link);
   const isCopied = await navigator.clipboard?.writeText(link).then(() => true, () => false);
-  showNotice(isCopied ? "Link to this view copied" : "The address of the page is a link to this view");
-  setTimeout(() => showNotice(""), 2500);
+  showNotice("link", isCopied ? "Link to this view copied" : "The address of the page is a link to this view");
+  setTimeout(() => showNotice("link", ""), 2500);
 }
 
 function listenToFiles(player) {
@@ -144,8 +144,8 @@ async function start() {
   follow(player).catch(showError);
   const served = await UrlSource.find("/cache.mcap");
   if (!served) {
-    const { ok } = await fetch("/live.json").catch(() => ({ ok: false }));
-    ok || showState("empty", "Drop a cache here", "or choose a file");
+    const { status } = await fetch("/live.json").catch(() => ({ status: 0 }));
+    status === 200 || showState("empty", "Drop a cache here", "or choose a file");
   } else if (await player.open(served, await UrlSource.find("/other.mcap"))) {
     await applyAddress(player);
   }

@@ -89,7 +89,7 @@ function unit(vector) {
 }
 
 // Larger coordinates are treated like those that are not finite.
-const MAX_COORDINATE = 1e9;
+export const MAX_COORDINATE = 1e9;
 
 export class Mesh {
   constructor(topology) {

@@ -38,6 +38,16 @@ export function readContacts(data) {
   return reader.take(count).slice();
 }
 
+// The looks of particles at one recorded time, as eight numbers per particle: factor on the radius, opacity, red, green and
+// blue (red below 0: no colour of its own), and red, green and blue of its light.
+export function readLooks(data) {
+  const reader = new Reader(data);
+  reader.take(12); // frame, substep, substeps
+  const count = reader.u32();
+  reader.take(16); // zeros, time
+  return unshuffle(reader.take(32 * count), 8 * count);
+}
+
 // Reverses the byte shuffle: four planes, the lowest byte of every float first.
 function unshuffle(planes, count) {
   const bits = new Uint32Array(count);

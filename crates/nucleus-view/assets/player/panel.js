@@ -167,8 +167,16 @@ export function showState(state, message = "", hint = "") {
   byId("hint").textContent = hint;
 }
 
-// Shows a line at the top; an empty text removes it.
-export function showNotice(text) {
-  byId("notice").textContent = text;
-  byId("notice").hidden = text === "";
+// The notices at the top, by what they are about.
+const notices = new Map();
+
+// Shows a notice about the "file", a "frame", the "run" in progress or the "link"; an empty text removes it. Notices about
+// other things stay.
+export function showNotice(about, text) {
+  notices.set(about, text);
+  const shown = [...notices.values()].filter(Boolean);
+  byId("notice").textContent = shown.join("\n");
+  byId("notice").hidden = shown.length === 0;
+  // Diagnostics point to a column of their excerpt.
+  byId("notice").classList.toggle("diagnostic", shown.some((one) => one.includes("\n")));
 }

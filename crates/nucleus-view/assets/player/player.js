@@ -7,7 +7,8 @@ import {
   byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showNotice, showObjects, showSelections,
   showSeriesFigures, showSeriesNow, showSpeed, showState, showTime,
 } from "./panel.js";
-import { Scene, unionOf } from "./scene.js";
+import { levelPlane } from "./plane.js";
+import { Scene, boxOf, unionOf } from "./scene.js";
 import { Series } from "./series.js";
 import { hasSurfaces, withSurfaces } from "./surface.js";
 import { Timeline } from "./timeline.js";
@@ -32,7 +33,7 @@ export class Player {
   async open(source, other = null) {
     this.timeline?.pause();
     this.timeline = null;
-    showNotice("");
+    ["file", "frame"].forEach((about) => showNotice(about, ""));
     showState("loading", `Opening ${source.name}`);
     const onProgress = (share) => showState("loading", `Scanning ${source.name}`, `${Math.round(share * 100)} %`);
     try {
@@ -51,23 +52,30 @@ export class Player {
 
   async present(cache, name) {
     const { scene, camera } = this;
-    const last = cache.frames.length - 1;
     scene.setObjects(cache.objects, this.other?.objects);
     ["difference", "twin"].forEach((id) => (byId(id).hidden = !this.other));
-    byId("contacts").hidden = !cache.objects.some((object) => object.contacts !== undefined);
-    await this.findStage(cache, [...new Set([last, last >> 1, 0])]);
-    document.title = `${name} – Nucleus`;
-    byId("name").textContent = cache.run.scene || name;
-    byId("name").title = `${name}, written by Nucleus ${cache.run.version}`;
-    scene.setSelections(cache.run.selections);
-    showObjects(scene, this.redraw);
-    showSelections(scene, this.redraw);
+    const stage = await this.findStage(cache);
+    scene.setStage(stage.box, stage.floor);
+    camera.frame(stage.box, scene.aspect);
     showIncomplete(cache);
-    byId("surface").hidden = !hasSurfaces(cache);
-    byId("camera").hidden = cache.run.cameras.length === 0;
+    this.describe(cache, name);
     camera.track = cache.run.cameras[0] ?? null;
     this.take(cache);
     await this.timeline.go(0);
+  }
+
+  // Shows the names and selections of a run, and the buttons of what it holds.
+  describe(cache, name) {
+    const { scene } = this;
+    document.title = `${name} – Nucleus`;
+    byId("name").textContent = cache.run.scene.split(/[/\\]/).pop() || name;
+    byId("name").title = `${cache.run.scene}\n${name}, written by Nucleus ${cache.run.version}`.trim();
+    scene.setSelections(cache.run.selections);
+    showObjects(scene, this.redraw);
+    showSelections(scene, this.redraw);
+    byId("contacts").hidden = !cache.objects.some((object) => object.contacts !== undefined);
+    byId("surface").hidden = !hasSurfaces(cache);
+    byId("camera").hidden = cache.run.cameras.length === 0;
   }
 
   // Gives a cache to the timeline and to the series.
@@ -90,12 +98,14 @@ export class Player {
     const follows = before.index >= before.last && !isNew;
     const { index, marks, speed, isLooping, isPlaying, rate } = before;
     before.pause();
+    const stage = await this.findStage(cache);
     if (isNew) {
       this.scene.setObjects(cache.objects);
-      this.scene.setSelections(cache.run.selections);
-      showObjects(this.scene, this.redraw);
-      showSelections(this.scene, this.redraw);
+      this.describe(cache, name);
     }
+    this.followCamera(cache);
+    this.scene.setStage(stage.box, stage.floor);
+    this.camera.measure(stage.box);
     this.take(cache);
     Object.assign(this.timeline, { index: Math.min(index, cache.frames.length - 1), marks, speed, isLooping });
     if (isPlaying) {
@@ -105,24 +115,33 @@ export class Player {
     }
   }
 
-  // Finds the bounding box of the run from a few frames, and frames it.
-  async findStage(cache, frames) {
-    const { scene, camera } = this;
-    const [simulated, all] = [[], []];
-    for (const frame of frames) {
-      const state = await cache.state(frame).catch(() => null);
-      if (state) {
-        scene.update(state);
-        simulated.push(scene.bounds());
-        all.push(...scene.objects.map(({ mesh }) => mesh.bounds));
-      }
+  // Follows the camera of the same name in a cache that replaces another; if it is gone, the view stays where it was.
+  followCamera(cache) {
+    const { camera } = this;
+    const found = cache.run.cameras.find(({ name }) => name === camera.track?.name);
+    if (camera.track && !found) {
+      camera.leave();
     }
-    const stage = unionOf(simulated.filter(Boolean)) ?? DEFAULT_STAGE;
+    camera.track = found ?? null;
+  }
+
+  // The bounding box of the run, from a few frames, and the plane of its floor.
+  async findStage(cache) {
+    const last = cache.frames.length - 1;
+    const [simulated, all] = [[], []];
+    for (const frame of new Set([last, last >> 1, 0])) {
+      const { positions = [] } = await cache.state(frame).catch(() => ({}));
+      positions.forEach((points, k) => {
+        const box = boxOf(points);
+        all.push(box);
+        cache.objects[k].topology.kind !== "collider" && simulated.push(box);
+      });
+    }
+    const box = unionOf(simulated) ?? unionOf(all) ?? DEFAULT_STAGE;
     // A collider may be a landscape that reaches far below the cloth.
-    const extent = Math.max(...stage.high.map((x, axis) => x - stage.low[axis]));
-    const floor = cache.run.floor ?? Math.max(unionOf(all)?.low[1] ?? 0, stage.low[1] - extent * 1.5);
-    scene.setStage({ low: [stage.low[0], Math.min(stage.low[1], floor), stage.low[2]], high: stage.high }, floor);
-    camera.frame(stage, scene.aspect);
+    const extent = Math.max(...box.high.map((x, axis) => x - box.low[axis]));
+    const below = () => levelPlane(Math.max(unionOf(all)?.low[1] ?? 0, box.low[1] - extent * 1.5));
+    return { box, floor: cache.run.floor ?? below() };
   }
 
   async show(cache, index, timeIndex) {
@@ -146,10 +165,11 @@ export class Player {
       showFigures(state.report, scene.invalidPoints, twin?.report);
       this.compare(state, twin);
       showContactStates(scene, state.contacts);
+      showNotice("frame", "");
       this.redraw();
       cache.prefetch(index);
     } catch (error) {
-      showNotice(`Frame ${cache.frameNumber(index)}: ${error.message} ${error.hint ?? ""}`);
+      showNotice("frame", `Frame ${cache.frameNumber(index)}: ${error.message} ${error.hint ?? ""}`);
     }
   }
 
@@ -336,7 +356,7 @@ function showIncomplete(cache) {
   if (cache.complete) {
     return;
   }
-  showNotice(last === cache.run.end
+  showNotice("file", last === cache.run.end
     ? "The file was never closed, or its index is damaged; its frames can be shown."
     : `The run is incomplete: frames ${first} to ${last} are shown.`);
 }

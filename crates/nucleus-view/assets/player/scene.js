@@ -1,8 +1,10 @@
 // The scene: the objects of a run in their current state, drawn with WebGL2.
 
-import { cross, multiply, normalise, orthographic, scale, view } from "./camera.js";
+import { cross, multiply, normalise, orthographic, view } from "./camera.js";
 import { VertexArray, context, depthTarget, program } from "./gl.js";
-import { Mesh } from "./mesh.js";
+import { MAX_COORDINATE, Mesh } from "./mesh.js";
+import { Particles } from "./particles.js";
+import { axesOf, foot } from "./plane.js";
 import {
   CONTACT_STATE_COLOURS, DEPTH, DOTS, FLOOR, LINES, PARTICLES, SELECTION_COLOURS, STRAIN, SURFACE, objectColours,
 } from "./shading.js";
@@ -32,11 +34,11 @@ export class Scene {
 
   // Replaces the objects. `twins` are the objects of the other run, if one is compared.
   setObjects(objects, twins = []) {
-    this.objects.concat(this.twins).forEach(({ vertices }) => vertices.delete());
+    this.objects.concat(this.twins).forEach(({ vertices, particles }) => [vertices, particles].forEach((one) => one.delete()));
     const colours = objectColours(objects);
     const drawable = ({ name, topology }, colour) => ({
       name, topology, mesh: new Mesh(topology), colour, isShown: true,
-      vertices: new VertexArray(this.gl, [3, 3, 1]),
+      vertices: new VertexArray(this.gl, [3, 3, 1]), particles: new Particles(this.gl),
     });
     this.objects = objects.map((object, k) => drawable(object, colours[k]));
     this.twins = twins.map((object) => drawable(object, TWIN));
@@ -64,7 +66,7 @@ export class Scene {
       const { points } = twin.mesh;
       twin.mesh.shift = [where === "beside" ? width * 1.15 : 0, 0, 0];
       twin.mesh.points = null; // so that the same points count as changed
-      this.setPoints([twin], [points]);
+      this.setPoints([twin], [points], [twin.looks]);
     }
     this.isShadowStale = true;
   }
@@ -76,30 +78,33 @@ export class Scene {
     return this.look.twin === "off" ? [] : this.twins.filter((twin) => isKnown(twin) && isShown(twin));
   }
 
-  // `stage` is the bounding box of the simulated objects over the run; `floor` is the height of the floor.
-  setStage(stage, floor) {
-    this.stage = stage;
+  // `stage` is the bounding box of the simulated objects over the run; `floor` is the plane of the floor.
+  setStage({ low, high }, floor) {
+    // Shadows reach the floor below the objects.
+    const height = foot(floor, low.map((x, axis) => (x + high[axis]) / 2))[1];
+    this.stage = { low: [low[0], Math.min(low[1], height), low[2]], high };
     this.floor = floor;
     this.isShadowStale = true;
   }
 
-  // Moves the floor to a height; null leaves it.
-  moveFloor(height) {
-    this.floor = height ?? this.floor;
+  // Moves the floor to a plane; null leaves it.
+  moveFloor(plane) {
+    this.floor = plane ?? this.floor;
   }
 
-  // Sets the state: the positions of each object, and their mesh.
-  update({ positions, meshes }, twins = null) {
+  // Sets the state: the positions of each object, their mesh, and the looks of particles.
+  update({ positions, meshes, looks }, twins = null) {
     this.objects.forEach((object, k) => setMesh(object, meshes[k]));
-    this.setPoints(this.objects, positions);
+    this.setPoints(this.objects, positions, looks);
     if (twins) {
       this.twins.forEach((twin, k) => setMesh(twin, twins.meshes[k]));
-      this.setPoints(this.twins, twins.positions);
+      this.setPoints(this.twins, twins.positions, twins.looks);
     }
   }
 
-  setPoints(objects, positions) {
-    objects.forEach(({ mesh, vertices }, k) => {
+  setPoints(objects, positions, looks) {
+    objects.forEach((object, k) => {
+      const { mesh, vertices } = object;
       if (!positions[k]) {
         return;
       }
@@ -111,6 +116,10 @@ export class Scene {
           vertices.setIndices([mesh.drawnTriangles, mesh.drawnEdges]);
         }
         this.isShadowStale = true;
+      }
+      if (mesh.kind === "particles") {
+        object.looks = looks[k];
+        object.particles.set(mesh, looks[k]);
       }
     });
   }
@@ -150,8 +159,13 @@ export class Scene {
     const eye = { ...camera.matrices(this.aspect), eye: camera.eye, ...light };
     this.drawFloor(eye);
     gl.enable(gl.DEPTH_TEST);
-    this.objects.filter(({ isShown }) => isShown).forEach((object) => this.drawObject(object, eye));
+    // Transparent particles do not hide what is behind them, so they come last.
+    const isTransparent = ({ mesh, particles }) => mesh.kind === "particles" && particles.isTransparent;
+    // An object that has just been replaced has no state yet.
+    const shown = this.objects.filter(({ isShown, mesh }) => isShown && mesh.points);
+    shown.filter((object) => !isTransparent(object)).forEach((object) => this.drawObject(object, eye));
     this.drawnTwins.forEach((twin) => this.look.twin === "over" ? this.drawEdges(twin, eye) : this.drawObject(twin, eye));
+    shown.filter(isTransparent).forEach((object) => this.drawObject(object, eye));
     this.selections.filter(({ isShown }) => isShown).forEach((selection) => this.drawSelection(selection, eye));
     gl.bindVertexArray(null);
     gl.finish(); // so that frames do not queue up on slow graphics
@@ -187,7 +201,7 @@ export class Scene {
     gl.polygonOffset(2.5, 8);
     this.use(programs.depth, light);
     for (const { mesh, vertices, isShown } of this.objects.concat(this.look.twin === "beside" ? this.drawnTwins : [])) {
-      if (isShown && mesh.kind !== "particles") {
+      if (isShown && mesh.points && mesh.kind !== "particles") {
         vertices.draw(gl.TRIANGLES, TRIANGLES);
       }
     }
@@ -201,9 +215,10 @@ export class Scene {
     gl.disable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    const centre = [eye.centre[0], this.floor, eye.centre[2]];
-    const floor = { centre, reach: eye.reach * 9, spacing: roundLength(eye.reach / 4), background: BACKGROUND };
-    this.use(this.programs.floor, { ...eye, ...floor });
+    const [across, along] = axesOf(this.floor);
+    const plane = { centre: foot(this.floor, eye.centre), across, along, upright: this.floor.normal };
+    const look = { reach: eye.reach * 9, spacing: roundLength(eye.reach / 4), background: BACKGROUND };
+    this.use(this.programs.floor, { ...eye, ...plane, ...look });
     gl.bindVertexArray(this.empty);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     gl.disable(gl.BLEND);
@@ -258,14 +273,13 @@ export class Scene {
   }
 
   drawObject(object, eye) {
-    const { mesh, vertices, colour } = object;
+    const { mesh, vertices, particles, colour } = object;
     const { gl, programs, look } = this;
     if (mesh.kind === "particles") {
       const pixels = this.canvas.height;
       const radius = mesh.radius ?? eye.reach * 0.008;
       this.use(programs.particles, { ...eye, colour, radius, pixels });
-      gl.bindVertexArray(vertices.array);
-      gl.drawArrays(gl.POINTS, 0, mesh.count);
+      particles.draw(eye.view);
       return;
     }
     const isOfCloth = ["strain", "contacts"].includes(look.colour);
@@ -309,6 +323,19 @@ function setMesh(object, topology) {
     const { shift } = object.mesh;
     Object.assign(object, { topology, mesh: Object.assign(new Mesh(topology), { shift }) });
   }
+}
+
+// The bounding box of points, without points that are not finite.
+export function boxOf(points) {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (let k = 0; k < points.length; k += 3) {
+    const isDrawn = [0, 1, 2].every((axis) => Math.abs(points[k + axis]) <= MAX_COORDINATE); // false for NaN
+    for (let axis = 0; isDrawn && axis < 3; axis += 1) {
+      low[axis] = Math.min(low[axis], points[k + axis]);
+      high[axis] = Math.max(high[axis], points[k + axis]);
+    }
+  }
+  return { low, high };
 }
 
 // The union of boxes; null if all are empty. The bounds of an empty box are infinite and do not extend the union.

@@ -113,16 +113,26 @@ uniform vec4 ink;
 void main() { shown = ink; }`,
 };
 
+// A disc per particle, shaded as a ball. `size` is the factor on the radius and the opacity.
 export const PARTICLES = {
   vertex: `${HEAD}
 layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 size;
+layout(location = 2) in vec3 own;
+layout(location = 3) in vec3 given;
+uniform vec3 colour;
 uniform float radius, pixels;
+out vec3 tint, glow;
+out float opacity;
 void main() {
-  gl_Position = projection * view * vec4(position, 1.0);
-  gl_PointSize = max(2.0, radius * projection[1][1] * pixels / gl_Position.w);
+  tint = own.r < 0.0 ? colour : own; // below 0: no colour of its own
+  glow = given; opacity = size.y;
+  gl_Position = size.x > 0.0 ? projection * view * vec4(position, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+  gl_PointSize = max(2.0, size.x * radius * projection[1][1] * pixels / gl_Position.w);
 }`,
   fragment: `${HEAD}
-uniform vec3 colour;
+in vec3 tint, glow;
+in float opacity;
 out vec4 shown;
 void main() {
   vec2 from = gl_PointCoord * 2.0 - 1.0;
@@ -130,7 +140,7 @@ void main() {
   if (height < 0.0) discard;
   vec3 normal = transpose(mat3(view)) * vec3(from.x, -from.y, sqrt(height));
   float sky = 0.3 * (0.7 + 0.3 * normal.y);
-  shown = vec4(sqrt(colour * (max(dot(normal, toKey), 0.0) + sky)), 1.0);
+  shown = vec4(sqrt(tint * (max(dot(normal, toKey), 0.0) + sky) + glow), opacity);
 }`,
 };
 
@@ -157,33 +167,33 @@ void main() {
 }`,
 };
 
-// The floor is a large square that fades into the background.
+// The floor is a large square that fades into the background; `across` and `along` are the directions of its grid lines.
 export const FLOOR = {
   vertex: `${HEAD}
-uniform vec3 centre;
+uniform vec3 centre, across, along;
 uniform float reach;
 out vec3 at;
 void main() {
   vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-  at = centre + vec3(corner.x, 0.0, corner.y) * reach;
+  at = centre + (across * corner.x + along * corner.y) * reach;
   gl_Position = projection * view * vec4(at, 1.0);
 }`,
   fragment: `${HEAD}${SHADOW}
-uniform vec3 centre, background;
+uniform vec3 centre, across, along, upright, background;
 uniform float reach, spacing;
 in vec3 at;
 out vec4 shown;
 void main() {
-  vec2 place = at.xz / spacing;
+  vec2 place = vec2(dot(at, across), dot(at, along)) / spacing;
   vec2 width = fwidth(place);
   vec2 off = abs(fract(place - 0.5) - 0.5) / max(width, 0.012);
   float line = max(1.0 - off.x, 1.0 - off.y) * clamp(0.12 / max(width.x, width.y), 0.0, 1.0);
-  float far = length(at.xz - centre.xz) / reach;
-  vec3 colour = diffuse(vec3(0.05, 0.053, 0.058), vec3(0.0, 1.0, 0.0), keyVisibility(at, vec3(0.0, 1.0, 0.0)));
+  float far = length(at - centre) / reach;
+  vec3 colour = diffuse(vec3(0.05, 0.053, 0.058), upright, keyVisibility(at, upright));
   colour *= 1.0 + 0.6 * clamp(line, 0.0, 1.0);
   float opacity = 1.0 - smoothstep(0.12, 0.9, far);
   // From below the floor is transparent.
-  shown = vec4(sqrt(mix(background, colour, opacity)), eye.y < at.y ? opacity * 0.3 : opacity);
+  shown = vec4(sqrt(mix(background, colour, opacity)), dot(eye - at, upright) < 0.0 ? opacity * 0.3 : opacity);
 }`,
 };
 

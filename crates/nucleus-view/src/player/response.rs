@@ -176,6 +176,8 @@ const ASSETS: &[Asset] = assets![
     "/player/mesh.js" as SCRIPT,
     "/player/messages.js" as SCRIPT,
     "/player/panel.js" as SCRIPT,
+    "/player/particles.js" as SCRIPT,
+    "/player/plane.js" as SCRIPT,
     "/player/player.js" as SCRIPT,
     "/player/records.js" as SCRIPT,
     "/player/scene.js" as SCRIPT,

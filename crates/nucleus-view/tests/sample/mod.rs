@@ -11,7 +11,7 @@ use nucleus_cache::{
     SelectedPoints, Source,
 };
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, Faces, StateView, StepObserver, StepReport, SubstepIndex,
+    ClothId, ColliderId, ContactState, Faces, ParticleLook, StateView, StepObserver, StepReport, SubstepIndex,
 };
 
 pub const FRAMES: i32 = 24;
@@ -20,6 +20,7 @@ pub const ROLLS: i32 = 10;
 /// Points along a side of the cloth.
 const SIDE: u32 = 33;
 const BALL: ColliderId = ColliderId(0);
+const DUST: ClothId = ClothId(1);
 const SUBSTEPS: u32 = 4;
 
 /// Variants of the run.
@@ -45,6 +46,8 @@ pub struct Sample {
     pub tilt: f64,
     /// The plane rises by this in each frame.
     pub rise: f64,
+    /// Particles beside the flag, green and half transparent.
+    pub dust: bool,
 }
 
 fn hoist() -> SelectedPoints {
@@ -67,6 +70,8 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
         scene_path: "scenes/sample.ron".into(),
         end: FRAMES,
         contacts: sample.contacts,
+        looks: sample.dust,
+        radii: sample.dust.then(|| ("dust".to_owned(), 0.1)).into_iter().collect(),
         selections: if sample.selected { vec![hoist()] } else { Vec::new() },
         ground: sample.plane.map(|y| plane(y, sample.tilt)),
         ground_motion: match sample.plane.filter(|_| sample.rise != 0.0) {
@@ -79,7 +84,7 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
         ..RunInfo::default()
     };
     let run = RunInfo { cameras: sample.camera.then(camera).into_iter().collect(), ..run };
-    let mut recorder = Recorder::create(path, &run, objects()).unwrap();
+    let mut recorder = Recorder::create(path, &run, objects(sample.dust)).unwrap();
     recorder.record_start(&State { time: 0.0, frame: 1, broken: false }).unwrap();
     recorder
 }
@@ -127,11 +132,21 @@ struct State {
 }
 
 impl StateView for State {
-    fn positions(&self, _: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
+    fn positions(&self, cloth: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
+        if cloth == DUST {
+            *out = dust();
+            return;
+        }
         *out = flag(self.time);
         if self.broken {
             out.iter_mut().step_by(50).for_each(|point| point[1] = f32::NAN);
         }
+    }
+    fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {
+        let look =
+            ParticleLook { radius: 2.0, opacity: 0.5, color: Some([0.0, 0.8, 0.0]), incandescence: [0.0; 3] };
+        out.clear();
+        out.resize(if cloth == DUST { dust().len() } else { 0 }, look);
     }
     fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
@@ -153,15 +168,22 @@ impl StateView for State {
     }
 }
 
-fn objects() -> Vec<(Source, ObjectInfo)> {
+fn objects(has_dust: bool) -> Vec<(Source, ObjectInfo)> {
     let [(sphere, at_start), (cube, corners)] = [sphere(), cube()];
     let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
     let object = |name: &str, kind, faces, rest| ObjectInfo { name: name.into(), kind, faces, rest };
-    vec![
-        (Source::Cloth(ClothId(0)), object("flag", cloth, grid(), rest())),
+    let particles = object("dust", ObjectKind::Particles, Faces::default(), dust());
+    let flag = (Source::Cloth(ClothId(0)), object("flag", cloth, grid(), rest()));
+    let colliders = [
         (Source::Collider(BALL), object("ball", collider, sphere, at_start)),
         (Source::Collider(ColliderId(1)), object("cube", collider, cube, corners)),
-    ]
+    ];
+    let dust = has_dust.then_some((Source::Cloth(DUST), particles));
+    [flag].into_iter().chain(dust).chain(colliders).collect()
+}
+
+fn dust() -> Vec<[f32; 3]> {
+    (0..4u8).map(|k| [0.2 + 0.6 * f32::from(k), 2.5, 0.4]).collect()
 }
 
 fn rest() -> Vec<[f32; 3]> {
