@@ -13,16 +13,17 @@ export function optionsOf({ timeline, scene, camera, series }) {
   } else {
     options.set("view", [camera.yaw, camera.pitch, camera.distance, ...camera.target].map(short).join(","));
   }
-  const { colour, scales, wireframe, twin } = scene.look;
+  const { colour, scales, wireframe, surface, twin } = scene.look;
   if (COLOURINGS.includes(colour)) {
     options.set(colour, colour in scales ? short(scales[colour]) : "");
   }
   new Set(scene.selections.filter(({ isShown }) => isShown).map(({ owner }) => owner)).forEach((owner) => options.append("select", owner));
   wireframe && options.set("wireframe", "");
+  surface && options.set("surface", "");
   scene.twins.length > 0 && options.set("twin", twin);
   ["in", "out"].forEach((name, k) => marks[k] !== null && options.set(name, cache.frameNumber(marks[k])));
   speed !== 1 && options.set("speed-of-play", speed);
-  series.key !== "max_strain" && options.set("figure", series.key);
+  series.key !== series.usual && options.set("figure", series.key);
   return options;
 }
 
@@ -49,6 +50,9 @@ export async function applyAddress(player) {
   }
   if (options.has("wireframe") && !scene.look.wireframe) {
     player.toggleWireframe();
+  }
+  if (options.has("surface") && !scene.look.surface) {
+    player.toggleSurface();
   }
   if (options.has("select")) {
     player.select(options.getAll("select"));

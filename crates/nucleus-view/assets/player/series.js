@@ -26,7 +26,7 @@ export class Series {
   constructor(canvas, onFigures, onNow) {
     this.canvas = canvas;
     Object.assign(this, { onFigures, onNow });
-    this.key = "max_strain";
+    this.chosen = null; // the key of a figure, once one is chosen
     this.cache = null;
     this.marks = [null, null];
     window.addEventListener("resize", () => this.draw());
@@ -43,6 +43,16 @@ export class Series {
     this.fill();
   }
 
+  // The key of the figure that is shown unless another is chosen. Particles alone have no strain.
+  get usual() {
+    const hasCloth = this.cache?.objects.some(({ topology }) => topology.kind === "cloth") ?? true;
+    return hasCloth ? "max_strain" : "kinetic_energy";
+  }
+
+  get key() {
+    return this.chosen ?? this.usual;
+  }
+
   get last() {
     return Math.max(1, this.cache.frames.length - 1);
   }
@@ -57,7 +67,7 @@ export class Series {
   }
 
   choose(key) {
-    this.key = key;
+    this.chosen = key;
     this.draw();
   }
 
