@@ -223,6 +223,17 @@ fn a_damaged_frame_of_an_incomplete_run_is_named_beside_its_frames() {
 }
 
 #[test]
+fn a_cache_that_was_deleted_is_said_to_be_gone() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample::default());
+    let player = serve(&path, 0).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let shown = look_at(&player, chromium, "", SOFTWARE);
+    assert!(shown.page.contains("The cache is no longer there."), "{}", shown.page);
+}
+
+#[test]
 fn particles_have_their_recorded_radius_and_colour() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();

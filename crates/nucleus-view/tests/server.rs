@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 
-use nucleus_view::{Player, ViewError, serve};
+use nucleus_view::{LiveRun, Player, ViewError, serve, serve_live};
 
 /// A served file of 1000 bytes that differ from their neighbours.
 fn served() -> (tempfile::TempDir, Player, Vec<u8>) {
@@ -70,6 +70,27 @@ fn a_growing_file_is_served_at_its_current_length() {
     std::fs::write(folder.path().join("späte Fahne.mcap"), &bytes).unwrap();
     let (_, _, body) = get(player.address(), "/cache.mcap", "Range: bytes=1000-1002\r\n");
     assert_eq!(body, [1, 2, 3]);
+}
+
+#[test]
+fn parts_that_a_run_does_not_have_are_no_errors_and_a_lost_cache_is_gone() {
+    let (folder, player, _) = served();
+    for path in ["/live.json", "/other.mcap"] {
+        assert_eq!(get(player.address(), path, "").0, 204, "{path}");
+    }
+    let path = folder.path().join("späte Fahne.mcap");
+    std::fs::write(&path, "").unwrap();
+    assert_eq!(get(player.address(), "/cache.mcap", "Range: bytes=0-99\r\n").0, 204, "still empty");
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(get(player.address(), "/cache.mcap", "").0, 410);
+}
+
+#[test]
+fn a_live_run_without_a_file_has_no_cache_yet() {
+    let folder = tempfile::tempdir().unwrap();
+    let player = serve_live(&LiveRun::new(folder.path().join("run.mcap")), 0).unwrap();
+    assert_eq!(get(player.address(), "/cache.mcap", "").0, 204);
+    assert_eq!(get(player.address(), "/live.json", "").0, 200);
 }
 
 #[test]

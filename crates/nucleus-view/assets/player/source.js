@@ -16,14 +16,13 @@ export class DamagedFrame extends PlayerError {
 }
 
 export class UrlSource {
-  // The cache of the server, or null if there is no server or no cache.
+  // The cache of the server, or null if there is no server or no cache. A cache that is no longer there is an error.
   static async find(url) {
-    try {
-      const head = await fetch(url, { method: "HEAD" });
-      return head.ok ? new UrlSource(url, head.headers) : null;
-    } catch {
-      return null;
+    const head = await fetch(url, { method: "HEAD" }).catch(() => null);
+    if (head?.status === 410) {
+      throw new PlayerError("The cache is no longer there.", "The file was moved or deleted. Start `nucleus play` again.");
     }
+    return head?.status === 200 ? new UrlSource(url, head.headers) : null;
   }
 
   constructor(url, headers) {

@@ -42,6 +42,11 @@ const OTHER: &str = "/other.mcap";
 /// Before the object and the recorded time of a surface of particles.
 const SURFACE: &str = "/surface/";
 
+/// The status for a part that the page asks for and this run does not have, or not yet: browsers report 404 as an error.
+const NOTHING_YET: &str = "204 No Content";
+/// The status for a cache that was there when the server started.
+const GONE: &str = "410 Gone";
+
 /// The path of the state of a live run.
 const LIVE: &str = "/live.json";
 
@@ -56,9 +61,13 @@ pub(super) fn respond(request: &Request, caches: &Caches, to: &mut impl Write) -
         return refuse(to, "403 Forbidden", "");
     }
     match (request.path.as_str(), &caches.other) {
-        (CACHE, _) => return send_cache(request, &caches.shown.path(), with_body, to),
+        (CACHE, _) => {
+            let missing = if matches!(caches.shown, Shown::Live(_)) { NOTHING_YET } else { GONE };
+            return send_cache(request, &caches.shown.path(), missing, with_body, to);
+        }
         (LIVE, _) => return send_live(&caches.shown, with_body, to),
-        (OTHER, Some(other)) => return send_cache(request, other, with_body, to),
+        (OTHER, Some(other)) => return send_cache(request, other, GONE, with_body, to),
+        (OTHER, None) => return refuse(to, NOTHING_YET, ""),
         _ => {}
     }
     if let Some(wanted) = request.path.strip_prefix(SURFACE) {
@@ -81,7 +90,7 @@ fn send_asset(asset: &Asset, with_body: bool, to: &mut impl Write) -> io::Result
 }
 
 fn send_live(shown: &Shown, with_body: bool, to: &mut impl Write) -> io::Result<()> {
-    let Shown::Live(run) = shown else { return refuse(to, "404 Not Found", "") };
+    let Shown::Live(run) = shown else { return refuse(to, NOTHING_YET, "") };
     let text = run.to_json();
     head(to, "200 OK", text.len() as u64, "Content-Type: application/json\r\n")?;
     if with_body { to.write_all(text.as_bytes()) } else { Ok(()) }
@@ -94,8 +103,14 @@ fn send_surface(cache: &Path, wanted: &str, with_body: bool, to: &mut impl Write
 }
 
 /// The length is read at each request, because the cache of a running simulation grows.
-fn send_cache(request: &Request, cache: &Path, with_body: bool, to: &mut impl Write) -> io::Result<()> {
-    let Ok(mut file) = File::open(cache) else { return refuse(to, "404 Not Found", "") };
+fn send_cache(
+    request: &Request,
+    cache: &Path,
+    missing: &str,
+    with_body: bool,
+    to: &mut impl Write,
+) -> io::Result<()> {
+    let Ok(mut file) = File::open(cache) else { return refuse(to, missing, "") };
     let length = file.metadata()?.len();
     let name = cache.file_name().map(|name| escaped(&name.to_string_lossy())).unwrap_or_default();
     let mut headers = format!(
@@ -104,6 +119,7 @@ fn send_cache(request: &Request, cache: &Path, with_body: bool, to: &mut impl Wr
     );
     let (status, part) = match ByteRange::parse(request.range.as_deref(), length) {
         ByteRange::Whole => ("200 OK", 0..length),
+        ByteRange::Unsatisfiable if length == 0 => return refuse(to, NOTHING_YET, ""),
         ByteRange::Unsatisfiable => {
             return refuse(to, "416 Range Not Satisfiable", &format!("Content-Range: bytes */{length}\r\n"));
         }
