@@ -61,9 +61,9 @@
 //! threads. From [`ModelBuilder`] on, everything is in metres, kilograms and seconds.
 //!
 //! Imports point downwards: `math`, `bytes`, `parallel` and `input` know nothing of the solver; `step`, `checkpoint`
-//! and `report` are on top, and only `compiled` calls them.
+//! and `report` are on top.
 
-#![deny(unsafe_code)] // allowed where tasks share columns, each time with its reason
+#![deny(unsafe_code)] // allowed where tasks share columns and in SIMD lanes, each time with its reason
 
 mod bytes;
 mod checkpoint;
@@ -83,6 +83,7 @@ mod schedule;
 mod solver;
 mod state;
 mod step;
+mod union_find;
 
 /// Vectors of the public interface.
 pub use nalgebra;

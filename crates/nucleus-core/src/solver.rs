@@ -136,7 +136,7 @@ impl<R: Real> Solver<R> {
         let self_collides = cloths.len() > 1 || cloths.iter().any(|cloth| cloth.lists.self_collision);
         let mut models: Vec<ClothModel<R>> = Vec::with_capacity(cloths.len());
         for (cloth, order) in cloths.iter().zip(&link_orders) {
-            let first = models.last().map_or(0, |last| last.points().start + last.blocks.columns());
+            let first = models.last().map_or(0, |last| last.blocks.end());
             models.push(ClothModel::new(cloth, order, first, !colliders.is_empty() || self_collides));
         }
         let mut state = State::new(&cloths, &models);

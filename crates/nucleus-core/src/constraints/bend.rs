@@ -140,7 +140,7 @@ mod tests {
         proptest::collection::vec(proptest::array::uniform4(-0.5f32..0.5), COUNT).prop_map(|all| {
             let free = all.into_iter().enumerate();
             let free = free.map(|(k, [x, y, z, w])| Row4([x, y, z, if k % 5 == 0 { 0.0 } else { 1.5 + w }]));
-            free.chain((SIDE * SIDE..Blocks::new(0, COUNT).columns()).map(|_| Row4::ZERO)).collect()
+            free.chain((SIDE * SIDE..Blocks::new(0, COUNT).row_count()).map(|_| Row4::ZERO)).collect()
         })
     }
 
@@ -190,7 +190,7 @@ mod tests {
         ) {
             let (blocks, rows) = (Blocks::new(0, COUNT), rows::<f32>(&sheet, |point| point));
             let mut anchors: Vec<[f64; 3]> = sheet.positions.iter().map(|&x| (x * 0.9).into()).collect();
-            anchors.resize(blocks.columns() as usize, [0.0; 3]);
+            anchors.resize(blocks.row_count() as usize, [0.0; 3]);
             prop_assert!(agrees(&rows.of_four, &sheet, &anchors, (&start, backward)));
             if !rows.of_six.is_empty() {
                 prop_assert!(agrees(&rows.of_six, &sheet, &anchors, (&start, backward)));

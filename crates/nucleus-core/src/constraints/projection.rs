@@ -213,7 +213,7 @@ mod tests {
                 .enumerate()
                 .map(|(k, [x, y, z, w])| Row4([x, y, z, if k % 5 == 0 { 0.0 } else { 1.5 + w }]));
             let blocks = Blocks::new(0, POINTS as usize);
-            free.chain((POINTS..blocks.columns()).map(|_| Row4::ZERO)).collect()
+            free.chain((POINTS..blocks.row_count()).map(|_| Row4::ZERO)).collect()
         })
     }
 

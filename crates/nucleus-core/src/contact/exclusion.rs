@@ -19,7 +19,7 @@ pub fn update_pair_filter<R: Real>(
         return;
     }
     let before = contact.pair_filter.clone();
-    let rows = model.cloths.last().map_or(0, |last| last.points().start + last.blocks.columns()) as usize;
+    let rows = model.cloths.last().map_or(0, |last| last.blocks.end()) as usize;
     contact.pair_filter.set_exclusions(&frame.exclusions, &model.cloths, &model.colliders, rows);
     if links_changed {
         contact.pair_filter.set_welds(links.clusters(&model.cloths), links.can_tear());

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use crate::contact::collider::ColliderState;
 use crate::contact::placed_surface::{Nearest, PlacedSurface};
 use crate::input::frame::{FieldSide, ForceField, FrameInput};
+use crate::input::samples::sample_at;
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
 use crate::state::State;
@@ -27,17 +28,8 @@ impl ForceField {
             FieldSide::Single | FieldSide::Double => away,
         };
         let factor = if map.is_empty() { 1.0 } else { nearest.mean(|corner| map[corner as usize]) };
-        Some(direction * (self.magnitude * factor * falloff_at(&self.falloff, distance / self.distance)))
+        Some(direction * (self.magnitude * factor * sample_at(&self.falloff, distance / self.distance)))
     }
-}
-
-/// The falloff at a share of the distance, between evenly spaced samples in straight lines.
-pub fn falloff_at(falloff: &[f64; ForceField::SAMPLES], share: f64) -> f64 {
-    let last = falloff.len() - 1;
-    let at = share.clamp(0.0, 1.0) * last as f64;
-    let low = (at as usize).min(last - 1);
-    let [a, b] = [falloff[low], falloff[low + 1]];
-    a + (b - a) * (at - low as f64)
 }
 
 /// Accelerates points in the fields of other objects for a substep of `length` seconds that begins at `time` as a share

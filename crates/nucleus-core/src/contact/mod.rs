@@ -52,7 +52,7 @@
 //! | points inside a collider | [`depenetration`] |
 //! | push-out of points near a surface | [`push_out`] |
 //! | the state of contact, and the inputs and outputs of its passes | [`system`] |
-//! | certificates and fallbacks at the end of a step | [`safeguard`] |
+//! | certificates and fallbacks at the end of a step | [`safeguard`], [`fallbacks`] |
 //! | the contact state of each point, for observers | [`contact_state`] |
 //! | what particles touch, for their rotation | [`touches`] |
 //!
@@ -88,7 +88,7 @@
 //! | `cloth::certify::MAX_ADVANCE`, `MIN_PLANE_SHARE` | 0.9, 0.05 | the next step starts with a gap on both sides |
 //! | `cloth::untangling::UNTANGLING_SPEED` | 12 e/s | half an edge length in a film frame |
 //! | `cloth::untangling::OVERSHOOT`, `MIN_SLANT` | 1.25, 0.1 | an end returns past the face; an edge parallel to it gives no direction |
-//! | `safeguard` attempts | 4, 6, 8, 32 | push, scaled push, truncate, freeze |
+//! | `fallbacks` attempts | 4, 6, 8, 32 | push, scaled push, truncate, freeze |
 //! | `schedule::adaptive` | 1 e, e / 64, 25 % | advance and strain at which steps are split |
 
 pub mod boundary;
@@ -103,6 +103,7 @@ pub mod colouring;
 pub mod contact_state;
 pub mod depenetration;
 pub mod exclusion;
+pub mod fallbacks;
 pub mod force_field;
 pub mod ground;
 pub mod kept_gaps;

@@ -9,9 +9,9 @@ use nalgebra::Vector3;
 
 use crate::contact::bvh::{Aabb, Bvh};
 use crate::contact::collider::ColliderState;
-use crate::contact::force_field::falloff_at;
 use crate::input::frame::FrameInput;
 use crate::input::object_fields::PointField;
+use crate::input::samples::sample_at;
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
 use crate::particles::population::Population;
@@ -48,7 +48,7 @@ impl Sources {
             if Some(at as usize) != own && distance > 0.0 && distance < reach {
                 let share = (distance - self.field.radius) / self.field.distance;
                 let factor = self.factors.get(at as usize).map_or(1.0, |&factor| f64::from(factor));
-                sum += from * (factor * falloff_at(&self.field.falloff, share) / distance);
+                sum += from * (factor * sample_at(&self.field.falloff, share) / distance);
             }
         });
         sum

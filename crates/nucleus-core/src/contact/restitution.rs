@@ -55,11 +55,8 @@ fn restitution_at_colliders<R: Real>(
     restitution: Restitution<R>,
     cloth: usize,
 ) {
-    for index in 0..pass.contact.collider_contacts.len() {
+    for index in pass.contact.lists_of(cloth) {
         let collider = pass.contact.collider_contacts[index].collider;
-        if pass.contact.collider_contacts[index].cloth != cloth {
-            continue;
-        }
         let material =
             pass.contact.collider_materials_of(cloth)[collider].filter(|material| material.has_restitution());
         let Some(material) = material else { continue };

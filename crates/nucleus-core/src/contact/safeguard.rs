@@ -27,24 +27,16 @@ use crate::contact::collider::pass::{
     accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
     revert_collider_contacts,
 };
+use crate::contact::fallbacks::{FREEZE_ATTEMPTS, PUSHING_ENDS, TRUNCATING_ENDS, thickness_scale};
 use crate::contact::ground::pass::certify_ground_contacts;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::math::{Real, Row4};
 use crate::output::{Stage, StepObserver};
 
-/// Attempts of each fallback.
-const PUSH_ATTEMPTS: usize = 4;
-const SCALED_ATTEMPTS: usize = 6;
-const TRUNCATE_ATTEMPTS: usize = 8;
-const FREEZE_ATTEMPTS: usize = 32;
-
-/// Attempts after which the safeguard no longer pushes.
-const PUSHING_ENDS: usize = PUSH_ATTEMPTS + SCALED_ATTEMPTS;
-
 /// Certifies all pairs at the end of a time step, and applies the fallbacks.
 pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
     let has_cloth_contact = pass.contact.cloth_contacts.as_ref().is_some_and(ClothContacts::is_enabled);
-    for attempt in 0..=PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS {
+    for attempt in 0..=TRUNCATING_ENDS + FREEZE_ATTEMPTS {
         watch.enter(Stage::BroadPhase);
         if has_cloth_contact {
             update_cloth_candidates(pass);
@@ -60,7 +52,7 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
         }
         sides += certify_ground_contacts(pass);
         let unproven = [cloths, sides];
-        let is_last = attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS + FREEZE_ATTEMPTS;
+        let is_last = attempt == TRUNCATING_ENDS + FREEZE_ATTEMPTS;
         if unproven == [0, 0] || is_last {
             *pass.counters.pairs_unresolved.get_mut() += unproven[0] + unproven[1] + inseparable;
         }
@@ -68,7 +60,7 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
             return;
         }
         if attempt < PUSHING_ENDS {
-            let thickness_scale = 0.5f64.powi((attempt + 1).saturating_sub(PUSH_ATTEMPTS) as i32);
+            let thickness_scale = thickness_scale(attempt);
             if unproven[0] > 0 {
                 mask_islands(pass.contact, |[among_cloths, _]| among_cloths);
                 resolve_cloth_contacts(pass, thickness_scale, watch);
@@ -76,12 +68,12 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
             mask_islands(pass.contact, |[among_cloths, with_colliders]| among_cloths || with_colliders);
             resolve_collider_contacts(pass, thickness_scale, watch);
             pass.contact.contact_mask.clear();
-        } else if attempt < PUSHING_ENDS + TRUNCATE_ATTEMPTS {
+        } else if attempt < TRUNCATING_ENDS {
             pass.contact.carriers.clear();
             truncate(pass);
             revert_collider_contacts(pass);
         } else if !is_last {
-            if attempt == PUSHING_ENDS + TRUNCATE_ATTEMPTS {
+            if attempt == TRUNCATING_ENDS {
                 begin_freezing(pass);
             }
             revert_collider_contacts(pass);

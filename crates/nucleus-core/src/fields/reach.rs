@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::input::fields::{Reach, Volume, VolumeShape};
+use crate::input::samples::sample_at;
 
 impl Reach {
     /// The share of the field at a point, given from the centre; 0 where it does not reach. Without a largest distance the
@@ -19,7 +20,7 @@ impl Reach {
         if relative.is_some_and(|relative| relative > 1.0) {
             return 0.0;
         }
-        let curve = relative.map_or(1.0, |relative| self.falloff_at(relative));
+        let curve = relative.map_or(1.0, |relative| sample_at(&self.falloff, relative));
         let base =
             relative.map_or_else(|| 1.0 / (1.0 + from_center.norm() / self.unit), |relative| 1.0 - relative);
         match self.attenuation {
@@ -40,14 +41,6 @@ impl Reach {
             return Some(from_center.norm() / self.max_distance);
         }
         self.volume.filter(|_| self.falls_off_in_volume).map(|volume| volume.depth(from_center).min(1.0))
-    }
-
-    /// The falloff curve at a share of the largest distance.
-    fn falloff_at(&self, share: f64) -> f64 {
-        let place = share.clamp(0.0, 1.0) * (Self::SAMPLES - 1) as f64;
-        let at = (place as usize).min(Self::SAMPLES - 2);
-        let [a, b] = [self.falloff[at], self.falloff[at + 1]];
-        a + (b - a) * (place - at as f64)
     }
 }
 

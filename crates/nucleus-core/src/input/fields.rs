@@ -4,6 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::input::ClothId;
+use crate::input::samples::FALLOFF_SAMPLES;
 
 /// A force field in one frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -137,7 +138,7 @@ pub struct Reach {
 
 impl Reach {
     /// Samples of the falloff.
-    pub const SAMPLES: usize = 17;
+    pub const SAMPLES: usize = FALLOFF_SAMPLES;
 
     /// Everywhere the same.
     pub fn everywhere() -> Self {

@@ -7,6 +7,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::bytes::{Encode, Reader};
+use crate::input::samples::{FALLOFF_SAMPLES, sample_at};
 use crate::input::{ClothId, ColliderId, PointId};
 
 /// One end of a link.
@@ -38,6 +39,14 @@ impl LinkSide {
     /// A point of a cloth.
     pub fn point(cloth: ClothId, point: PointId) -> Self {
         Self::Cloth { cloth, points: [point; 3], weights: [1.0, 0.0, 0.0] }
+    }
+
+    /// The cloth, by its index, where it is on one.
+    pub(crate) fn cloth(&self) -> Option<usize> {
+        match self {
+            Self::Cloth { cloth, .. } => Some(cloth.index()),
+            _ => None,
+        }
     }
 
     /// Whether the solver moves it.
@@ -103,6 +112,11 @@ impl Link {
         }
     }
 
+    /// The cloths on its sides, by index.
+    pub(crate) fn cloths(&self) -> impl Iterator<Item = usize> {
+        self.sides.into_iter().filter_map(|side| side.cloth())
+    }
+
     /// The two points that it joins, where both sides are single points of cloth.
     pub fn points(&self) -> Option<[(ClothId, PointId); 2]> {
         let point = |side: &LinkSide| match *side {
@@ -144,15 +158,11 @@ pub struct Falloff {
 
 impl Falloff {
     /// The number of samples.
-    pub const SAMPLES: usize = 17;
+    pub const SAMPLES: usize = FALLOFF_SAMPLES;
 
     /// The value at a length in metres, between samples in straight lines.
     pub fn at(&self, length: f64) -> f64 {
-        let last = Self::SAMPLES - 1;
-        let share = if self.distance > 0.0 { (length / self.distance).clamp(0.0, 1.0) } else { 1.0 };
-        let low = ((share * last as f64) as usize).min(last - 1);
-        let [a, b] = [self.samples[low], self.samples[low + 1]];
-        a + (b - a) * (share * last as f64 - low as f64)
+        sample_at(&self.samples, if self.distance > 0.0 { length / self.distance } else { 1.0 })
     }
 }
 

@@ -9,6 +9,7 @@
 //! | force fields of the scene | [`fields`] |
 //! | what objects do to the air and to each other at a distance | [`object_fields`] |
 //! | links of dynamic constraints | [`links`] |
+//! | ramps as evenly spaced samples | [`samples`] |
 //! | how NaN, infinite and absurdly large values are replaced | [`validation`] |
 
 pub mod fields;
@@ -16,6 +17,7 @@ pub mod frame;
 pub mod links;
 pub mod object_fields;
 pub mod particles;
+pub mod samples;
 pub mod validation;
 
 /// A cloth of a model, counted in the order in which the builder received them.

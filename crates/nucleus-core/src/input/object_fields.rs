@@ -1,7 +1,6 @@
 //! Effects of objects at a distance: fields around their points, wind shadows, pushed air.
 
-/// Samples of the falloff of a force field.
-pub const FALLOFF_SAMPLES: usize = 17;
+use crate::input::samples::FALLOFF_SAMPLES;
 
 /// Force fields around the points of an object (`pointForceField`).
 #[derive(Debug, Clone, Copy, PartialEq)]

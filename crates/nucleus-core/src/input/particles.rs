@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::input::ClothId;
+use crate::input::samples::sample_at;
 
 /// What a ramp is read by; the right end of a ramp stands at `input_max`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -165,13 +166,9 @@ impl ParticleRamp {
         Some(if self.input_max > 0.0 { input / self.input_max } else { f64::from(u8::from(input > 0.0)) })
     }
 
-    /// The factor at a place; before the left end and behind the right it is constant.
+    /// The factor at a place.
     fn at(&self, place: f64) -> f64 {
-        let last = self.samples.len() - 1;
-        let along = place.clamp(0.0, 1.0) * last as f64;
-        let at = (along as usize).min(last.saturating_sub(1));
-        let [a, b] = [self.samples[at], self.samples[(at + 1).min(last)]];
-        a + (b - a) * (along - at as f64)
+        sample_at(&self.samples, place)
     }
 }
 

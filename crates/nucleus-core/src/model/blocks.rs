@@ -28,6 +28,11 @@ impl Blocks {
         Self { first, points, count, capacity: points, max_count: count }
     }
 
+    /// With all points that there is room for.
+    fn filled(self) -> Self {
+        Self { points: self.capacity, count: self.max_count, ..self }
+    }
+
     /// Cuts only the first `points` into blocks; the rows behind them stay unused.
     pub fn resize(&mut self, points: usize) {
         debug_assert!(points as u32 <= self.capacity, "{points} of {}", self.capacity);
@@ -69,8 +74,13 @@ impl Blocks {
     }
 
     /// The number of rows: one per point that there is room for, and the padding points.
-    pub fn columns(&self) -> u32 {
+    pub fn row_count(&self) -> u32 {
         self.capacity + self.max_count + 1
+    }
+
+    /// The row behind the last.
+    pub fn end(&self) -> u32 {
+        self.first + self.row_count()
     }
 }
 
@@ -111,9 +121,10 @@ pub struct AllBlocks {
 }
 
 impl AllBlocks {
-    /// The blocks of these cloths, counted through.
+    /// The blocks of these cloths with all points that there is room for, counted through: particles that are not born yet
+    /// can have rows too.
     pub fn new(cloths: impl Iterator<Item = Blocks>) -> Self {
-        let cloths: Vec<Blocks> = cloths.collect();
+        let cloths: Vec<Blocks> = cloths.map(Blocks::filled).collect();
         let count = |sum: &mut usize, blocks: &Blocks| Some(std::mem::replace(sum, *sum + blocks.len()));
         let before = cloths.iter().scan(0, count).collect();
         Self { cloths, before }
@@ -133,7 +144,7 @@ impl Partition for AllBlocks {
         self.cloths[cloth].padding_point(block - self.before[cloth])
     }
     fn span(&self) -> Range<u32> {
-        0..self.cloths.last().map_or(0, |last| last.first + last.columns())
+        0..self.cloths.last().map_or(0, Blocks::end)
     }
 }
 

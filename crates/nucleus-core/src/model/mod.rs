@@ -168,9 +168,9 @@ impl<R: Real> ClothModel<R> {
         let maps = MapReader { maps: &cloth.vertex_maps, point: &point, blocks: &blocks };
         let distances = link_order::distances(surface, order_of_links);
         let keeps_order = *order_of_links == LinkOrder::Mesh;
-        let columns = model.blocks.columns();
+        let row_count = model.blocks.row_count();
         let levels = |rows: &[LinkRow<R>]| match keeps_order {
-            true => link_order::levels_of_list(rows, first, columns),
+            true => link_order::levels_of_list(rows, first, row_count),
             false => link_order::levels(rows, &distances, point),
         };
         let mut strength_maps = StrengthMaps::default();
@@ -236,7 +236,7 @@ impl<R: Real> ClothModel<R> {
         [model.field_map, model.mass_map] = maps;
         if *order_of_links == LinkOrder::Parallel {
             let groups = model.stretch.groups().iter().chain(model.shear.groups());
-            model.valence = link_order::valence(groups, first, model.blocks.columns());
+            model.valence = link_order::valence(groups, first, model.blocks.row_count());
         }
         model.strength_maps = strength_maps;
         if cloth.lists.air {

@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 
 use crate::model::surface::Surface;
+use crate::union_find::UnionFind;
 
 /// Two points at a rest length, and the cloth between them that the link stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +52,7 @@ pub fn stretch_links(surface: &Surface, with_cross_links: bool) -> Vec<Link> {
     links
 }
 
-/// The cross links without_cross_links, each as long as it is wide: the links of `shearResistance`.
+/// The cross links of quads alone, each of a strip as wide as the link is long: the links of `shearResistance`.
 pub fn shear_links(surface: &Surface) -> Vec<Link> {
     let mut links = merged(surface, diagonals(surface, |_, _, _| 0.0));
     links.iter_mut().for_each(|link| link.slenderness = 1.0);
@@ -180,29 +181,15 @@ pub fn seams(surface: &Surface) -> Vec<Seam> {
 /// is in none.
 pub fn components(surface: &Surface) -> Vec<Vec<u32>> {
     let points = surface.positions.len();
-    let mut parent: Vec<u32> = (0..points as u32).collect();
-    fn root(parent: &mut [u32], mut point: u32) -> u32 {
-        while parent[point as usize] != point {
-            parent[point as usize] = parent[parent[point as usize] as usize];
-            point = parent[point as usize];
-        }
-        point
-    }
+    let mut sets = UnionFind::new(points);
     let mut in_face = vec![false; points];
     for face in surface.faces.iter() {
-        let first = root(&mut parent, face[0]);
         face.iter().for_each(|&point| in_face[point as usize] = true);
-        face[1..].iter().fold(first, |first, &point| {
-            let other = root(&mut parent, point);
-            let (low, high) = (first.min(other), first.max(other));
-            parent[high as usize] = low;
-            low
-        });
+        face[1..].iter().for_each(|&point| sets.union(face[0], point));
     }
     let mut parts: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
     for point in (0..points as u32).filter(|&point| in_face[point as usize]) {
-        let root = root(&mut parent, point);
-        parts.entry(root).or_default().push(point);
+        parts.entry(sets.find(point)).or_default().push(point);
     }
     parts.into_values().collect()
 }

@@ -16,6 +16,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use crate::parallel::disjoint::DisjointSlice;
+
 /// The closure of a loop without its lifetime: see the safety notes where it is called.
 type Work = *const (dyn Fn(usize) + Sync);
 
@@ -105,6 +107,16 @@ impl ThreadPool {
         if let Some(panic) = panic {
             resume_unwind(panic);
         }
+    }
+
+    /// Calls `work` with the index of each item and the item, each in a task of its own.
+    pub fn for_each_mut<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
+        let (count, items) = (items.len(), DisjointSlice::new(items));
+        self.parallel_for(count, |at| {
+            // SAFETY: every index is run once, so no two tasks have the same item.
+            let [item] = (unsafe { items.run(at as u32..at as u32 + 1) }) else { return };
+            work(at, item);
+        });
     }
 
     /// The least value of some items, infinity without any.

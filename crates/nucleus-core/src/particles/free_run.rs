@@ -11,6 +11,7 @@ use std::sync::atomic::Ordering;
 
 use crate::contact::collider::near_collider::NearCollider;
 use crate::contact::collider::near_points::NearPoints;
+use crate::contact::fallbacks::{PUSHING_ENDS, TRUNCATE_ATTEMPTS, TRUNCATING_ENDS, thickness_scale};
 use crate::contact::ground::GroundContact;
 use crate::contact::response::{Impact, Restitution};
 use crate::contact::time_step::{ColliderStep, PositionWriter};
@@ -19,9 +20,8 @@ use crate::particles::free_pass::FreePass;
 
 /// Turns of colliders and the ground at a point that they push into each other.
 const TURNS: usize = 8;
-/// Attempts of the safeguard to push, to push with a smaller and smaller share of the thickness, to move a point with the
-/// surface and off the ground, and to move it with the surface alone.
-const ATTEMPTS: [usize; 4] = [4, 6, 4, 4];
+/// Attempts after which the ground pushes no more, and only the surface moves a point.
+const GROUND_ENDS: usize = PUSHING_ENDS + TRUNCATE_ATTEMPTS / 2;
 
 /// Points of a run: their buffers fit into the nearest cache.
 const RUN: usize = 128;
@@ -220,14 +220,14 @@ impl<R: Real> Run<'_, R> {
     /// Applies the fallbacks to a point until it has its certificates. Returns the number of contacts without.
     fn settle(&self, point: u32, near: &mut NearPoints<R>) -> u64 {
         let mut unproven = 0;
-        for attempt in 0..ATTEMPTS.iter().sum() {
-            let scale = 0.5f64.powi((attempt + 1).saturating_sub(ATTEMPTS[0]).min(ATTEMPTS[1]) as i32);
-            if attempt < ATTEMPTS[0] + ATTEMPTS[1] {
+        for attempt in 0..TRUNCATING_ENDS {
+            let scale = thickness_scale(attempt);
+            if attempt < PUSHING_ENDS {
                 self.push_by_colliders(Some(point), scale, near);
             } else {
                 self.revert(point, near);
             }
-            if attempt < ATTEMPTS[..3].iter().sum()
+            if attempt < GROUND_ENDS
                 && let Some(ground) = self.ground(scale)
             {
                 ground.resolve(point..point + 1);

@@ -6,7 +6,6 @@
 use crate::constraints::link::lists::Links;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::FrameInput;
-use crate::input::links::LinkSide;
 use crate::math::Real;
 
 /// Whether each cloth moves freely: no pin, no link to a fixed place, and no contact in the last frame, neither of its own
@@ -26,17 +25,10 @@ pub fn alternating_cloths<R: Real>(
 fn hold_linked<R: Real>(links: &Links<R>, is_held: &mut [bool]) -> bool {
     let mut has_grown = false;
     for link in links.constraints.iter().flat_map(|constraint| &constraint.links) {
-        let holds = link.sides.iter().any(|side| of_cloth(side).is_none_or(|cloth| is_held[cloth]));
-        for cloth in link.sides.iter().filter_map(of_cloth).filter(|_| holds) {
+        let holds = link.sides.iter().any(|side| side.cloth().is_none_or(|cloth| is_held[cloth]));
+        for cloth in link.cloths().filter(|_| holds) {
             has_grown |= !std::mem::replace(&mut is_held[cloth], true);
         }
     }
     has_grown
-}
-
-fn of_cloth(side: &LinkSide) -> Option<usize> {
-    match side {
-        LinkSide::Cloth { cloth, .. } => Some(cloth.index()),
-        _ => None,
-    }
 }

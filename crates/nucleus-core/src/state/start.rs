@@ -9,7 +9,7 @@ use crate::state::State;
 impl<R: Real> State<R> {
     /// Columns for all cloths, at the start that each cloth gives. Padding points have no mass.
     pub fn new(cloths: &[Cloth], models: &[ClothModel<R>]) -> Self {
-        let rows = models.last().map_or(0, |last| last.points().start + last.blocks.columns()) as usize;
+        let rows = models.last().map_or(0, |last| last.blocks.end()) as usize;
         let air = models.iter().any(|model| !model.triangles.is_empty());
         let mut state = Self {
             anchor: vec![[0.0; 3]; rows],

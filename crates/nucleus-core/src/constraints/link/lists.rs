@@ -12,6 +12,7 @@ use crate::model::rows::RowList;
 use crate::model::{ClothModel, ColliderModel};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::union_find::UnionFind;
 
 use super::batches::for_batches;
 use super::combined::{CombinedLists, LinkFrame};
@@ -273,30 +274,17 @@ impl<R: Real> Links<R> {
     pub fn clusters(&self, cloths: &[ClothModel<R>]) -> Vec<u32> {
         let welds = self.constraints.iter().filter(|constraint| constraint.layout.is_weld);
         let links = welds.flat_map(|constraint| constraint.links.iter().zip(&constraint.broken));
-        let mut parents: Vec<u32> = Vec::new();
+        let mut sets: Option<UnionFind> = None;
         for link in links.filter(|(_, broken)| !**broken).map(|(link, _)| link) {
             let ends = Ends::new(link, cloths);
             if ends.count != 2 || ends.weights[..2] != [1.0, -1.0] {
                 continue;
             }
-            if parents.is_empty() {
-                parents = self.blocks.span().collect();
-            }
-            let [a, b] = [ends.rows[0], ends.rows[1]].map(|row| root(&mut parents, row));
-            parents[a.max(b) as usize] = a.min(b);
+            let sets = sets.get_or_insert_with(|| UnionFind::new(self.blocks.span().len()));
+            sets.union(ends.rows[0], ends.rows[1]);
         }
-        (0..parents.len() as u32).map(|row| root(&mut parents, row)).collect()
+        sets.map_or_else(Vec::new, |mut sets| self.blocks.span().map(|row| sets.find(row)).collect())
     }
-}
-
-/// The representative of a row, with path halving.
-fn root(parents: &mut [u32], mut row: u32) -> u32 {
-    while parents[row as usize] != row {
-        let above = parents[parents[row as usize] as usize];
-        parents[row as usize] = above;
-        row = above;
-    }
-    row
 }
 
 impl<R: Real> ConstraintLinks<R> {

@@ -85,11 +85,7 @@ impl Viscosity {
     fn find_lines(&mut self, neighbours: &Neighbours, (factors, rate): (&[f32], f32), pool: &ThreadPool) {
         let count = neighbours.len();
         self.lines.resize_with(count.div_ceil(CHUNK as usize), Vec::new);
-        let lines = DisjointSlice::new(&mut self.lines);
-        pool.parallel_for(count.div_ceil(CHUNK as usize), |chunk| {
-            // SAFETY: each task has the entry of its chunk.
-            #[allow(unsafe_code)]
-            let out = unsafe { &mut lines.run(chunk as u32..chunk as u32 + 1)[0] };
+        pool.for_each_mut(&mut self.lines, |chunk, out| {
             out.clear();
             for (k, at) in chunk_range(chunk, count).enumerate() {
                 let place = neighbours.positions[at as usize];

@@ -53,6 +53,7 @@ pub fn update_collider_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth:
         break window;
     };
     pass.contact.active_windows[cloth] = window;
+    let of_cloth = pass.contact.lists_of(cloth);
     let ContactPass {
         pool,
         model: Model { cloths, colliders, .. },
@@ -69,7 +70,7 @@ pub fn update_collider_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth:
         ..
     } = pass;
     let bounds = MotionBounds { boxes: window_bounds, first: 0, frame_travel: frame_travel[cloth] };
-    for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
+    for list in &mut collider_contacts[of_cloth] {
         if let Some(material) = &collider_materials[cloth * colliders.len() + list.collider] {
             let is_at_rest = !collider_states[list.collider].moves && frame_travel[cloth] == [R::ZERO; 3];
             let growth = is_at_rest.then_some(&bound_growth[..]);
@@ -124,6 +125,7 @@ fn interval_end<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> f64 {
 
 /// Searches contacts of a cloth with every collider, for all points with a new bound.
 fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
+    let of_cloth = pass.contact.lists_of(cloth);
     let ContactPass {
         state,
         pool,
@@ -146,7 +148,7 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
     let interval = candidate_intervals[cloth];
     let bounds = MotionBounds { boxes: interval_bounds, first: 0, frame_travel: frame_travel[cloth] };
     let mut freed = Vec::new();
-    for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
+    for list in &mut collider_contacts[of_cloth] {
         let collider = list.collider;
         list.interval = interval;
         let material = collider_materials[cloth * colliders.len() + collider];

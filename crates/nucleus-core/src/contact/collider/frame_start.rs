@@ -28,8 +28,8 @@ pub fn begin_collider_contact<R: Real>(
     let is_same = update_materials(contact, frame);
     for (cloth, is_same) in is_same.into_iter().enumerate() {
         if !contact.has_collider_material(cloth) {
-            let lists = contact.collider_contacts.iter_mut().filter(|list| list.cloth == cloth);
-            lists.for_each(ColliderContacts::clear);
+            let of_cloth = contact.lists_of(cloth);
+            contact.collider_contacts[of_cloth].iter_mut().for_each(ColliderContacts::clear);
         }
         let moved = near_colliders(contact, cloth).any(|collider| contact.collider_states[collider].moves);
         if is_same && !moved {
@@ -47,8 +47,9 @@ fn rebase_contacts<R: Real>(
     contact: &mut ContactSystem<R>,
     cloth: usize,
 ) {
+    let of_cloth = contact.lists_of(cloth);
     let ContactSystem { collider_contacts, interval_bounds, bounds_violated, .. } = contact;
-    for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
+    for list in &mut collider_contacts[of_cloth] {
         // Points inside a collider are tested in every frame.
         for &(point, _) in &list.depenetration.points {
             bounds_violated.get_mut(point as usize).into_iter().for_each(|is_violated| *is_violated = true);
@@ -78,7 +79,7 @@ fn invalidate_cloth<R: Real>(model: &Model<R>, contact: &mut ContactSystem<R>, c
 
 /// The colliders that a cloth can touch in this frame.
 pub fn near_colliders<R: Real>(contact: &ContactSystem<R>, cloth: usize) -> impl Iterator<Item = usize> {
-    let lists = contact.collider_contacts.iter().filter(move |list| list.cloth == cloth && list.is_near);
+    let lists = contact.collider_contacts[contact.lists_of(cloth)].iter().filter(|list| list.is_near);
     lists.map(|list| list.collider).filter(move |&at| contact.collider_materials_of(cloth)[at].is_some())
 }
 
@@ -134,7 +135,7 @@ pub fn find_approaching_colliders<R: Real>(
     cloth: usize,
     window: [f64; 2],
 ) -> bool {
-    if contact.collider_contacts.iter().all(|list| list.cloth != cloth || list.is_near) {
+    if contact.collider_contacts[contact.lists_of(cloth)].iter().all(|list| list.is_near) {
         return false;
     }
     let frame_motion = window.map(|time| travel_at(contact.frame_travel[cloth], time).map(R::to_f64));
@@ -148,9 +149,9 @@ pub fn find_approaching_colliders<R: Real>(
         in_moving_frame.into_iter().flat_map(|corner| frame_motion.map(|by| add(corner.into(), by))),
     );
     let mut any = false;
-    for index in 0..contact.collider_contacts.len() {
-        let ColliderContacts { cloth: of, collider, is_near, .. } = contact.collider_contacts[index];
-        let material = contact.collider_materials_of(cloth)[collider].filter(|_| of == cloth && !is_near);
+    for index in contact.lists_of(cloth) {
+        let ColliderContacts { collider, is_near, .. } = contact.collider_contacts[index];
+        let material = contact.collider_materials_of(cloth)[collider].filter(|_| !is_near);
         let Some(material) = material else { continue };
         let room = material.thickness * material.adhesion_range;
         if overlaps(cloth_box, room, contact.collider_states[collider].swept_bounds()) {

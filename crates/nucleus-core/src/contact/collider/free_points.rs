@@ -12,13 +12,11 @@ use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::lists::for_contacts_of;
 use crate::contact::collider::motion_bounds::{box_contains, travel_at};
 use crate::contact::collider::sweep::resolve_point;
+use crate::contact::fallbacks::{PUSHING_ENDS, TRUNCATING_ENDS, thickness_scale};
 use crate::contact::ground::pass::push_by_ground;
 use crate::contact::system::ContactPass;
 use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
-
-/// Attempts to push, to push with a smaller and smaller share of the thickness, and to move points with the surface.
-const ATTEMPTS: [usize; 3] = [4, 6, 8];
 
 /// Applies the fallbacks to the cloths that are marked as having contacts without certificate, where they are free points by
 /// themselves. Unmarks those that have none left.
@@ -40,16 +38,16 @@ fn is_independent<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
 /// Returns whether every contact has a certificate.
 fn settle<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) -> bool {
     let mut points = Vec::new();
-    let lists = pass.contact.collider_contacts.iter_mut().filter(|list| list.cloth == cloth);
-    lists.for_each(|list| points.append(&mut list.unproven));
-    for attempt in 0..ATTEMPTS.iter().sum() {
+    let of_cloth = pass.contact.lists_of(cloth);
+    pass.contact.collider_contacts[of_cloth].iter_mut().for_each(|list| points.append(&mut list.unproven));
+    for attempt in 0..TRUNCATING_ENDS {
         points.sort_unstable();
         points.dedup();
         if points.is_empty() {
             break;
         }
-        if attempt < ATTEMPTS[0] + ATTEMPTS[1] {
-            push(pass, cloth, &points, 0.5f64.powi((attempt + 1).saturating_sub(ATTEMPTS[0]) as i32));
+        if attempt < PUSHING_ENDS {
+            push(pass, cloth, &points, thickness_scale(attempt));
         } else {
             for_contacts_of(pass, cloth, |list, step, _, counters| {
                 for_contacts_of_points(list, &points, |list, own| {

@@ -13,8 +13,9 @@ pub fn for_contacts_of<R: Real>(
     mut work: impl FnMut(&mut ColliderContacts<R>, ColliderStep<'_, R>, &ThreadPool, &ContactCounters),
 ) {
     let ContactPass { state, pool, contact, counters, .. } = pass;
+    let of_cloth = contact.lists_of(cloth);
     let ContactSystem { collider_states, collider_contacts, collider_materials, material_maps, .. } = contact;
-    for list in collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
+    for list in &mut collider_contacts[of_cloth] {
         let Some(material) = collider_materials[cloth * collider_states.len() + list.collider] else {
             continue;
         };

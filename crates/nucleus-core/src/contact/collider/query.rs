@@ -18,7 +18,6 @@ use crate::contact::time_step::ColliderStep;
 use crate::input::frame::Elements;
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
-use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
 /// The input of a search. The collider's boxes are fitted to the candidate interval.
@@ -68,11 +67,7 @@ impl<R: Real> ColliderQuery<'_, R> {
         let groups = boundary.group_count(GROUP_SIZE);
         let chunks = groups.div_ceil(GROUPS_PER_TASK);
         tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
-        let own = DisjointSlice::new(tasks);
-        pool.parallel_for(chunks, |task| {
-            // SAFETY: every task has its own.
-            #[allow(unsafe_code)]
-            let [found] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
+        pool.for_each_mut(&mut tasks[..chunks], |task, found| {
             found.clear();
             let own = task * GROUPS_PER_TASK..((task + 1) * GROUPS_PER_TASK).min(groups);
             let new = own.map(|index| boundary.group(index, GROUP_SIZE)).filter(is_new);

@@ -94,15 +94,11 @@ pub fn merge(
     });
     colouring.assign(in_order, runs);
     indices.resize(end as usize, 0);
-    let (tasks, indices, selected) =
-        (selected.len(), DisjointSlice::new(indices), DisjointSlice::new(selected));
-    pool.parallel_for(tasks, |task| {
-        // SAFETY: the results of a selection task, and the rows of its pieces, belong to one task.
-        #[allow(unsafe_code)]
-        let [found] = (unsafe { selected.run(task as u32..task as u32 + 1) }) else { return };
+    let indices = DisjointSlice::new(indices);
+    pool.for_each_mut(selected, |_, found| {
         for &(piece, index) in &found.contacts {
             let to = &mut found.pieces[piece as usize].to;
-            // SAFETY: as above.
+            // SAFETY: the rows of its pieces belong to one task.
             #[allow(unsafe_code)]
             unsafe {
                 indices.set(*to, index);

@@ -62,7 +62,8 @@ fn keep_gaps_to<R: Real>(
     for row in model.cloths[cloth].points() {
         let place = Point::from(state.anchor[row as usize]);
         let Some(nearest) = surface.nearest(place, material.thickness) else { continue };
-        if nearest.distance < START_GAP && state.inverse_mass[row as usize] > R::ZERO {
+        let is_pinned = state.displacement[row as usize].0[3] <= R::ZERO;
+        if nearest.distance < START_GAP && !is_pinned {
             state.anchor[row as usize] = (nearest.point + nearest.normal * START_GAP).into();
         }
         let gap = nearest.distance.max(START_GAP);
@@ -83,10 +84,11 @@ pub fn release_cleared_points<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usi
     let own = points.start as usize..points.end as usize;
     kept.lowest[own.clone()].fill(clear());
     let ContactPass { state, contact, .. } = pass;
+    let of_cloth = contact.lists_of(cloth);
     let ContactSystem { collider_states, collider_contacts, collider_materials, material_maps, .. } =
         &**contact;
     let mut range = R::ZERO;
-    for list in collider_contacts.iter().filter(|list| list.cloth == cloth) {
+    for list in &collider_contacts[of_cloth] {
         let Some(material) = collider_materials[cloth * collider_states.len() + list.collider] else {
             continue;
         };

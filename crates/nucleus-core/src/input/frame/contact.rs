@@ -1,6 +1,6 @@
 //! Contact attributes of cloth and colliders: elements, self-collision, push out, and the force field of a surface.
 
-use crate::input::object_fields::FALLOFF_SAMPLES;
+use crate::input::samples::FALLOFF_SAMPLES;
 
 /// The elements of a mesh that touch the points of another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
