@@ -13,15 +13,15 @@
 use nalgebra::Vector3;
 
 use crate::input::frame::Bending;
-use crate::math::kernel::Kernel;
-use crate::math::{Lanes, Real, Row4};
+use crate::math::kernel::{self, Kernel};
+use crate::math::{Lanes, Real, Row4, by_axis, cross, dot};
 use crate::model::rows::Row;
 use crate::model::surface::Surface;
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::bend::BendStrength;
 use super::hinge::{HingeGroup, HingeRow, MIN_COSINE, weights};
-use super::side_by_side::{group_starts, load, store};
+use super::side_by_side::{group_starts, load_each, store};
 use super::strength_map::{StrengthGroup, StrengthMap};
 
 /// Vectors that give four hinges their sign, in addition to the hinges.
@@ -104,7 +104,7 @@ impl<R: Real> AngleStrength<R> {
     }
 }
 
-/// The ends of a hinge's edge, and weights of its points for the middles of the two far sides.
+/// The points of the two far sides of a hinge: one each between triangles, two each between quads.
 const fn far_sides<const N: usize>() -> [&'static [usize]; 2] {
     if N == 6 { [&[2, 3], &[4, 5]] } else { [&[2], &[3]] }
 }
@@ -143,9 +143,9 @@ fn spans_of<R: Real, L: Lanes<R>, const N: usize>(angles: &[AngleGroup<R>], x: &
     };
     let [near, other] = far_sides::<N>();
     [
-        [0, 1, 2].map(|axis| anchored(0, axis) + (x[1][axis] - x[0][axis])),
-        [0, 1, 2].map(|axis| anchored(1, axis) + (far(near, axis) - x[0][axis])),
-        [0, 1, 2].map(|axis| anchored(2, axis) + (far(other, axis) - x[0][axis])),
+        by_axis(|axis| anchored(0, axis) + (x[1][axis] - x[0][axis])),
+        by_axis(|axis| anchored(1, axis) + (far(near, axis) - x[0][axis])),
+        by_axis(|axis| anchored(2, axis) + (far(other, axis) - x[0][axis])),
     ]
 }
 
@@ -165,16 +165,6 @@ struct Measured<L> {
     longest: L,
 }
 
-#[inline(always)]
-fn cross<L: Copy + std::ops::Mul<Output = L> + std::ops::Sub<Output = L>>(a: [L; 3], b: [L; 3]) -> [L; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-fn dot<L: Copy + std::ops::Mul<Output = L> + std::ops::Add<Output = L>>(a: [L; 3], b: [L; 3]) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// Share of the longest chord below which the direction of a hinge turns from c to the bisector.
 const NEAR_FLAT: f64 = 0.02;
 
@@ -187,25 +177,27 @@ fn measure<R: Real, L: Lanes<R>, const N: usize>(
 ) -> Measured<L> {
     let splat = |value: f64| L::splat(R::from_f64(value));
     let (zero, one, tiny) = (splat(0.0), splat(1.0), L::splat(R::MIN_DENOMINATOR));
-    let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|k| hinges[k].anchored[axis]));
-    for (weight, x) in weights::<R, L, N>(hinges).into_iter().zip(x) {
-        (0..3).for_each(|axis| c[axis] = c[axis] + weight * x[axis]);
+    let mut c = by_axis(|axis| L::of_groups(|k| hinges[k].anchored[axis]));
+    let weights: [L; N] = weights(hinges);
+    for k in 0..N {
+        for axis in 0..3 {
+            c[axis] = c[axis] + weights[k] * x[k][axis];
+        }
     }
     let [edge, left, right] = spans_of(angles, x);
-    let normals = [cross(edge, left), cross(right, edge)].map(|normal| {
-        let length = dot(normal, normal).sqrt() + tiny;
-        normal.map(|x| x / length)
-    });
-    let n: [L; 3] = std::array::from_fn(|axis| normals[0][axis] + normals[1][axis]);
+    let [one_normal, other_normal] = [cross(edge, left), cross(right, edge)];
+    let one_length = dot(one_normal, one_normal).sqrt() + tiny;
+    let other_length = dot(other_normal, other_normal).sqrt() + tiny;
+    let n = by_axis(|axis| one_normal[axis] / one_length + other_normal[axis] / other_length);
     let length = dot(c, c).sqrt();
     let sign = dot(c, n).choose_by_sign(one, zero - one);
     let fold = L::of_groups(|k| hinges[k].inverse_square_max);
     // The twist of a quad has no fold: its chord is measured by its own rest.
     let longest = (fold - tiny).choose_by_sign(one / (fold.most(tiny)).sqrt(), length + tiny);
     let flat = longest * splat(NEAR_FLAT);
-    let m: [L; 3] = std::array::from_fn(|axis| c[axis] * sign + n[axis] * flat);
+    let m = by_axis(|axis| c[axis] * sign + n[axis] * flat);
     let size = dot(m, m).sqrt() + tiny;
-    let direction = m.map(|x| x / size);
+    let direction = by_axis(|axis| m[axis] / size);
     let flipped = L::of_groups(|k| angles[k].flipped);
     let past = flipped * flipped;
     let chord = (one - past) * (sign * length) + flipped * (longest + longest - length);
@@ -229,9 +221,8 @@ pub unsafe fn relax<R: Real, P: StrengthMap<R>, const N: usize>(
     backward: bool,
     strength: (&BendStrength<R>, &AngleStrength<R>),
 ) {
-    // Four lanes: the compiler calls the operations of eight one by one here, at three times the cost.
-    // SAFETY: the caller's promise, and every machine has four lanes.
-    unsafe { AngleSweep { points, lists, map, backward, strength }.run::<R::Lanes>() };
+    // SAFETY: the caller's promise.
+    unsafe { kernel::run(AngleSweep { points, lists, map, backward, strength }) };
 }
 
 /// A sweep over hinges with angles; see [`relax`].
@@ -259,8 +250,7 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for AngleSweep<'_, R,
             let (hinges, angles) = (&hinges[at..at + L::GROUPS], &angles[at..at + L::GROUPS]);
             let weights: [L; N] = weights(hinges);
             // SAFETY: the caller's promise.
-            let x: [[L; 4]; N] =
-                std::array::from_fn(|k| unsafe { load(points, |group| hinges[group].points[k]) });
+            let x: [[L; 4]; N] = unsafe { load_each(points, |k, group| hinges[group].points[k]) };
             let Measured { chord, direction, longest } = measure(hinges, angles, &x);
             let mut mobility = zero;
             for (k, x) in x.iter().enumerate() {
@@ -280,9 +270,9 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for AngleSweep<'_, R,
             let cosine = (cosine - least).choose_by_sign(cosine, least);
             let (share, compliance) = map.scale(at, error, share * grown, compliance / (grown + tiny));
             let lambda = share * error / (mobility + compliance * cosine.sqrt() + tiny);
-            let push = direction.map(|x| x * lambda);
+            let push = by_axis(|axis| direction[axis] * lambda);
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
-                let [mx, my, mz] = push.map(|push| weights[k] * push);
+                let [mx, my, mz] = by_axis(|axis| weights[k] * push[axis]);
                 // SAFETY: the caller's promise.
                 unsafe {
                     let moved = [px - w * mx, py - w * my, pz - w * mz, w];

@@ -7,11 +7,11 @@
 //! the angle.
 
 use crate::math::kernel::{self, Kernel};
-use crate::math::{Lanes, Real, Row4};
+use crate::math::{Lanes, Real, Row4, by_axis};
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::hinge::{HingeGroup, MIN_COSINE, RestGroup, weights};
-use super::side_by_side::{group_starts, load, store};
+use super::side_by_side::{group_starts, load_each, store};
 use super::strength_map::StrengthMap;
 
 /// The strength of a sweep over hinges.
@@ -65,9 +65,8 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R,
             let groups = &groups[at..at + L::GROUPS];
             let weights: [L; N] = weights(groups);
             // SAFETY: the caller's promise.
-            let x: [[L; 4]; N] =
-                std::array::from_fn(|k| unsafe { load(points, |group| groups[group].points[k]) });
-            let mut c = [0, 1, 2].map(|axis: usize| L::of_groups(|group| groups[group].anchored[axis]));
+            let x: [[L; 4]; N] = unsafe { load_each(points, |k, group| groups[group].points[k]) };
+            let mut c = by_axis(|axis| L::of_groups(|group| groups[group].anchored[axis]));
             let mut mobility = zero;
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
                 let weight = weights[k];
@@ -87,7 +86,7 @@ impl<R: Real, P: StrengthMap<R>, const N: usize> Kernel<R> for HingeSweep<'_, R,
             let lambda = share * bent / (mobility + compliance * cosine.sqrt() + tiny);
             let push = [lambda * c[0], lambda * c[1], lambda * c[2]];
             for (k, [px, py, pz, w]) in x.into_iter().enumerate() {
-                let [mx, my, mz] = push.map(|push| weights[k] * push);
+                let [mx, my, mz] = by_axis(|axis| weights[k] * push[axis]);
                 // SAFETY: the caller's promise.
                 unsafe {
                     let moved = [px - w * mx, py - w * my, pz - w * mz, w];

@@ -272,7 +272,9 @@ pub fn weights<R: Real, L: Lanes<R>, const N: usize>(groups: &[HingeGroup<R, N>]
     // As the rounded weights of the row were made: their sum is zero.
     let last = L::splat(R::ZERO) - a - b - c - c - d;
     let all = if N == 6 { [a, b, c, c, d, last] } else { [a, b, c, d, d, d] };
-    std::array::from_fn(|k| all[k])
+    let mut weights = [last; N];
+    weights.copy_from_slice(&all[..N]);
+    weights
 }
 
 impl<R: Real, const N: usize> HingeGroup<R, N> {

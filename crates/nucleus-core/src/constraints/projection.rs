@@ -7,7 +7,7 @@
 //! Eight links are two groups of one colour, so they share no point, and both widths give the same bits.
 
 use crate::math::kernel::{self, Kernel};
-use crate::math::{Lanes, Real, Row4};
+use crate::math::{Lanes, Real, Row4, by_axis};
 use crate::parallel::disjoint::DisjointSlice;
 
 use super::side_by_side::{group_starts, load, store};
@@ -72,7 +72,7 @@ impl<R: Real, P: LinkLaw<R>, const MOVED: usize> Kernel<R> for LinkSweep<'_, R, 
         for at in group_starts::<R, L>(groups.len(), backward) {
             let groups = &groups[at..at + L::GROUPS];
             // SAFETY: the caller's promise.
-            let ends = unsafe { [0, 1].map(|end| load(points, |k| groups[k].ends[end])) };
+            let ends = unsafe { [load(points, |k| groups[k].ends[0]), load(points, |k| groups[k].ends[1])] };
             let moved = projection.correction(|k| &groups[k], (law, at), ends).moved();
             for (end, moved) in moved.into_iter().enumerate().take(MOVED) {
                 // SAFETY: the caller's promise.
@@ -145,7 +145,7 @@ impl<L: Copy> LinkProjection<L> {
     where
         L: Lanes<R>,
     {
-        let [sx, sy, sz] = [0, 1, 2].map(|axis: usize| L::of_groups(|k| group(k).span[axis]));
+        let [sx, sy, sz] = by_axis(|axis| L::of_groups(|k| group(k).span[axis]));
         let [[ax, ay, az, w_a], [bx, by, bz, w_b]] = ends;
         let (dx, dy, dz) = (sx + (bx - ax), sy + (by - ay), sz + (bz - az));
         let length = (dx * dx + dy * dy + dz * dz).sqrt();

@@ -23,7 +23,26 @@ pub unsafe fn load<R: Real, L: Lanes<R>>(
     group: impl Fn(usize) -> [u32; 4],
 ) -> [L; 4] {
     // SAFETY: the caller's promise.
-    L::transpose([0, 1, 2, 3].map(|lane: usize| L::of_groups(|k| unsafe { points.get(group(k)[lane]) }.0)))
+    let rows = |lane: usize| L::of_groups(|k| unsafe { points.get(group(k)[lane]) }.0);
+    L::transpose([rows(0), rows(1), rows(2), rows(3)])
+}
+
+/// The columns x, y, z and inverse mass of `N` points of each row; `group` gives the points by their place in the row and by
+/// group.
+///
+/// # Safety
+/// The points are inside the column, and no other task of the loop writes them.
+#[inline(always)]
+pub unsafe fn load_each<R: Real, L: Lanes<R>, const N: usize>(
+    points: DisjointSlice<'_, Row4<R>>,
+    group: impl Fn(usize, usize) -> [u32; 4],
+) -> [[L; 4]; N] {
+    let mut columns = [[L::splat(R::ZERO); 4]; N];
+    for (k, columns) in columns.iter_mut().enumerate() {
+        // SAFETY: the caller's promise.
+        *columns = unsafe { load(points, |at| group(k, at)) };
+    }
+    columns
 }
 
 /// Writes the columns x, y, z and inverse mass of the points that `group` gives for every group.

@@ -49,6 +49,15 @@ pub fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: [T; 3], b: [T; 3]) ->
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// A value for each axis. Not an array's `map`, which is not inlined where the lanes are those of [`Kernel`]: each operation
+/// would then be a call.
+///
+/// [`Kernel`]: super::kernel::Kernel
+#[inline(always)]
+pub fn by_axis<T>(of: impl Fn(usize) -> T) -> [T; 3] {
+    [of(0), of(1), of(2)]
+}
+
 /// The sum of two triples.
 #[inline(always)]
 pub fn add<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
@@ -67,9 +76,9 @@ pub fn scale<R: Real>(a: [R; 3], by: R) -> [R; 3] {
     [a[0] * by, a[1] * by, a[2] * by]
 }
 
-/// The cross product.
+/// The cross product of two triples of numbers or lanes.
 #[inline(always)]
-pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 

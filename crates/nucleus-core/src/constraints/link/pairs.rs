@@ -171,7 +171,8 @@ impl<R: Real> Kernel<R> for PairSweep<'_, R> {
         for at in group_starts::<R, L>(all.len(), pass.backward) {
             let groups = &all[at..at + L::GROUPS];
             // SAFETY: the caller's promise.
-            let ends = unsafe { [0, 1].map(|end| load(points, |k| groups[k].row.ends[end])) };
+            let ends =
+                unsafe { [load(points, |k| groups[k].row.ends[0]), load(points, |k| groups[k].row.ends[1])] };
             let correction = projection.correction(|k| &groups[k].row, (all, at), ends);
             if let Some(loads) = &mut loads {
                 let loads = &mut loads[at..at + L::GROUPS];

@@ -212,8 +212,10 @@ impl Chunk {
                 };
                 sums = [sums[0] + term([a, b]), sums[1] + term([c, d])];
             }
-            let [[a, b], [c, d]] = sums.map(W::to_array);
-            *out = std::array::from_fn(|axis| (a[axis] + b[axis]) + (c[axis] + d[axis]));
+            let ([a, b], [c, d]) = (sums[0].to_array(), sums[1].to_array());
+            for axis in 0..4 {
+                out[axis] = (a[axis] + b[axis]) + (c[axis] + d[axis]);
+            }
         }
     }
 
