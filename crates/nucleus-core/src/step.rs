@@ -66,17 +66,21 @@ pub fn step<R: CompiledReal>(
     let given = frame.births.len();
     let (frame, sanitized) = sanitize(frame, solver);
     let report = match sanitized.first {
-        Some(InvalidInput::Duration) => skip_frame(solver, observer),
+        Some(InvalidInput::Duration) => skip_frame(solver, &frame, observer),
         _ => solve_frame(solver, &frame, observer),
     };
     let births_refused = report.births_refused + (given - frame.births.len()) as u64;
     StepReport { sanitized, births_refused, ..report }
 }
 
-/// A frame without a valid duration changes nothing.
-fn skip_frame<R: CompiledReal>(solver: &Solver<R>, observer: &mut dyn StepObserver) -> StepReport {
+/// A frame without a valid duration changes nothing, and nothing is born in it.
+fn skip_frame<R: CompiledReal>(
+    solver: &Solver<R>,
+    frame: &FrameInput,
+    observer: &mut dyn StepObserver,
+) -> StepReport {
     observer.substep(SubstepIndex { substep: 1, substeps: 1 }, solver);
-    StepReport::default()
+    StepReport { births_refused: frame.births.len() as u64, ..StepReport::default() }
 }
 
 fn solve_frame<R: CompiledReal>(
@@ -102,7 +106,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     solver.contact.has_touched.iter_mut().for_each(|mark| *mark.get_mut() = false);
     begin_collider_contact(&solver.model, &solver.state, &mut solver.contact, frame);
     begin_cloth_contact(&solver.state, &mut solver.contact, frame);
-    find_free_objects(&solver.model, &mut solver.state, &mut solver.contact, frame);
+    find_free_objects(&solver.model, &mut solver.state, &mut solver.contact, &solver.links, frame);
     solver.state.move_anchors();
     solver.state.carry_air(frame);
     solver.state.populations.iter_mut().for_each(Population::begin_frame);
@@ -217,14 +221,16 @@ fn end_substep<R: CompiledReal>(
     let substep_length = schedule.h * f64::from(schedule.steps);
     let end = f64::from(substep) / f64::from(schedule.substeps);
     turn_particles(solver, frame, [end, substep_length]);
-    age_particles(solver, frame, schedule, substep, counters);
+    let has_lost_links = age_particles(solver, frame, schedule, substep, counters);
     damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
     slow_particles(&solver.model.cloths, &mut solver.state, frame, substep_length);
     let Solver { model, state, contact, links, .. } = solver;
     damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
     let scene = (&*model, &contact.collider_states[..]);
     let has_broken = break_links(links, scene, state, frame, [end, substep_length]);
-    update_pair_filter(contact, model, links, frame, has_broken);
+    if has_broken || has_lost_links {
+        update_pair_filter(contact, model, links, frame, true);
+    }
     solver.contact.set_time(f64::from(substep) / f64::from(schedule.substeps));
 }
 

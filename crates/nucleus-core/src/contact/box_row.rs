@@ -13,6 +13,8 @@ type Lanes = <f32 as Real>::Lanes;
 #[derive(Debug, Clone, Default)]
 pub struct BoxRow {
     eights: Vec<Aabb8>,
+    /// The number of boxes; the rest of the last eight is empty.
+    len: usize,
 }
 
 /// Eight swept boxes: corners by end, axis and box.
@@ -30,6 +32,7 @@ impl BoxRow {
     /// Replaces all by the boxes of some elements.
     pub fn fill<T>(&mut self, things: &[T], boxes: impl Fn(&T) -> SweptBox) {
         self.eights.clear();
+        self.len = things.len();
         // Most rows are one or two long, where a vector would begin with room for four.
         self.eights.reserve_exact(things.len().div_ceil(8));
         self.eights.extend(things.chunks(8).map(|things| {
@@ -45,7 +48,11 @@ impl BoxRow {
         for (chunk, eights) in self.eights.chunks(EIGHTS_PER_TEST).enumerate() {
             let mut met = overlap_mask(eights, ours);
             while met != 0 {
-                found(8 * EIGHTS_PER_TEST * chunk + met.trailing_zeros() as usize);
+                let at = 8 * EIGHTS_PER_TEST * chunk + met.trailing_zeros() as usize;
+                // An unbounded box overlaps even empty ones.
+                if at < self.len {
+                    found(at);
+                }
                 met &= met - 1;
             }
         }
@@ -153,6 +160,17 @@ mod tests {
         let corner = || proptest::array::uniform3(-2.0..2.0f64).prop_map(Vector3::from);
         let one = (corner(), corner()).prop_map(|(a, b)| Aabb::new(a.inf(&b), a.sup(&b)));
         proptest::array::uniform2(one)
+    }
+
+    #[test]
+    fn an_unbounded_box_overlaps_every_box_of_a_row_and_nothing_beyond_its_end() {
+        let one = Aabb::new(Vector3::zeros(), Vector3::repeat(1.0));
+        let everywhere = Aabb::ball([0.0; 3], f32::INFINITY);
+        let mut row = BoxRow::default();
+        row.fill(&[[one; 2]; 11], |boxes| *boxes);
+        let mut found = Vec::new();
+        row.for_each_overlap(&[everywhere; 2], |at| found.push(at));
+        assert_eq!(found, (0..11).collect::<Vec<_>>());
     }
 
     proptest! {

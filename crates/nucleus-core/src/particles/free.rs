@@ -4,9 +4,11 @@
 //! their columns are read and written once. What only contact needs stands in the buffers of a task, and what outlasts the
 //! step is collected from the tasks in their order.
 
+use crate::constraints::link::lists::Links;
 use crate::contact::system::ContactSystem;
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
+use crate::input::links::Link;
 use crate::math::{Real, Row4};
 use crate::model::Model;
 use crate::parallel::thread_pool::ThreadPool;
@@ -22,10 +24,12 @@ pub fn find_free_objects<R: Real>(
     model: &Model<R>,
     state: &mut State<R>,
     contact: &mut ContactSystem<R>,
+    links: &Links<R>,
     frame: &FrameInput,
 ) {
+    let is_linked = linked_cloths(links, frame, model.cloths.len());
     for cloth in 0..model.cloths.len() {
-        contact.is_free[cloth] = is_free(model, contact, frame, cloth);
+        contact.is_free[cloth] = !is_linked[cloth] && is_free(model, contact, frame, cloth);
     }
     contact.free_gap = f64::INFINITY;
     contact.begin_lists(model, state.anchor.len());
@@ -40,10 +44,21 @@ fn is_free<R: Real>(model: &Model<R>, contact: &ContactSystem<R>, frame: &FrameI
     let rows = object.stretch.len() + object.shear.len() + object.bend.len() + object.bend_six.len();
     let is_attracted = frame.input_meshes.iter().any(|mesh| mesh.cloth.index() == cloth);
     let touches_cloth = contact.cloth_contacts.as_ref().is_some_and(|contacts| contacts.touches(cloth));
-    let is_tied = settings.liquid.is_some() || settings.tethers.is_some() || !frame.constraints.is_empty();
+    let is_tied = settings.liquid.is_some() || settings.tethers.is_some() || !frame.exclusions.is_empty();
     let has_shape = !object.boundary.triangles.is_empty() || object.has_faces || object.shape.shells() > 0;
     let is_plain = !has_shape && rows == 0;
     is_plain && !is_tied && !is_attracted && !touches_cloth
+}
+
+/// Whether each cloth has links in this frame.
+fn linked_cloths<R: Real>(links: &Links<R>, frame: &FrameInput, cloths: usize) -> Vec<bool> {
+    let mut is_linked = vec![false; cloths];
+    let mut mark = |link: &Link| link.cloths().for_each(|cloth| is_linked[cloth] = true);
+    for (at, settings) in frame.constraints.iter().enumerate() {
+        let before = links.constraints.get(at).map_or(&[][..], |own| &own.links);
+        settings.formed.as_deref().unwrap_or(before).iter().for_each(&mut mark);
+    }
+    is_linked
 }
 
 /// Applies a time step to all free points.

@@ -4,11 +4,13 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use crate::constraints::link::pass::begin_links;
 use crate::contact::system::ContactSystem;
 use crate::contact::time_step::ContactCounters;
 use crate::fields::update_fields_of;
 use crate::input::frame::{Birth, ClothFrame, FrameInput};
 use crate::input::validation::is_in_range;
+use crate::input::{ClothId, PointId};
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
 use crate::particles::first_way::Obstacles;
@@ -20,24 +22,25 @@ use crate::solver::Solver;
 use crate::state::State;
 
 /// Removes the particles that have died in a substep, then adds those that were born in it, and those of collisions. The
-/// substep is counted from 1.
+/// substep is counted from 1. Returns whether links have followed particles or gone with them.
 pub fn age_particles<R: Real>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
     schedule: &Schedule<R>,
     substep: u32,
     counters: &mut ContactCounters,
-) {
+) -> bool {
     let is_last = substep == schedule.substeps;
     let end = if is_last { 1.0 } else { f64::from(substep) / f64::from(schedule.substeps) };
     if solver.state.populations.is_empty() {
-        return;
+        return false;
     }
     let length = frame.duration / f64::from(schedule.substeps);
     for index in 0..solver.state.populations.len() {
         accelerate(solver, index, length);
         solver.state.populations[index].advance(length);
     }
+    let mut links_changed = false;
     let populations = solver.state.populations.iter_mut();
     let spawned: Vec<Spawn> =
         populations.flat_map(|population| std::mem::take(&mut population.spawned)).collect();
@@ -47,12 +50,17 @@ pub fn age_particles<R: Real>(
         let (cloth, before) = (population.cloth(), population.len());
         if let Some(kept) = population.remove_dead() {
             counters.deaths += (before - kept.len()) as u64;
-            remove_rows(solver, cloth, &kept);
+            links_changed |= remove_rows(solver, cloth, &kept);
         }
         add_births(solver, index, frame, [schedule.h, end], counters);
         add_spawned(solver, index, (&spawned, length), counters);
     }
     apply_ramps(solver);
+    if links_changed {
+        let Solver { links, model, state, contact, .. } = solver;
+        begin_links(links, model, state, contact, frame);
+    }
+    links_changed
 }
 
 /// Applies what a frame changes about living particles, and evaluates ramps.
@@ -140,8 +148,6 @@ fn add_births<R: Real>(
     let object = &model.cloths[cloth];
     let (first, row_of) = (object.points().end, object.blocks.rows().start);
     let flight = Flight::new(frame, &frame.cloths[cloth], [mass, object.point_mass], h);
-    let living = object.points();
-    let mut crowd = Crowd::of(&frame.cloths[cloth], living.map(|row| state.position(row).into()));
     let flights = births.map(|birth| {
         let age = (end - birth.time) * frame.duration;
         (birth, age, flight.after(birth, age))
@@ -149,6 +155,8 @@ fn add_births<R: Real>(
     let flights: Vec<_> = flights.collect();
     let ways = flights.iter().map(|(birth, _, (position, _))| [birth.position, *position]);
     let ways = ways.filter(|way| way.iter().all(is_in_range));
+    let living = object.points().map(|row| state.position(row).into());
+    let mut crowd = Crowd::of(&frame.cloths[cloth], living, corners(ways.clone().flatten()));
     let obstacles = Obstacles::new((&*model, &*state, contact), cloth, ways, [end, frame.duration]);
     for (birth, age, (mut position, mut velocity)) in flights {
         let population = &mut state.populations[index];
@@ -191,6 +199,12 @@ fn add_births<R: Real>(
     }
 }
 
+/// The low and the high corner of the bounding box of some places.
+fn corners(places: impl Iterator<Item = Vector3<f64>>) -> [Vector3<f64>; 2] {
+    let empty = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
+    places.fold(empty, |[low, high], place| [low.inf(&place), high.sup(&place)])
+}
+
 /// Puts a particle into a row.
 fn set_row<R: Real>(
     state: &mut State<R>,
@@ -228,9 +242,10 @@ fn begin_contact_of<R: Real>(
     }
 }
 
-/// Closes up the rows of an object; `kept` are the places of the particles that remain, which ascend.
-fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
-    let Solver { model, state, contact, .. } = solver;
+/// Closes up the rows of an object; `kept` are the places of the particles that remain, which ascend. Returns whether the
+/// object has links.
+fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) -> bool {
+    let Solver { model, state, contact, links, .. } = solver;
     let points = model.cloths[cloth].points();
     let rows = points.start as usize..points.end as usize;
     close_up(&mut state.anchor[rows.clone()], kept);
@@ -258,6 +273,8 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) {
     model.cloths[cloth].resize(kept.len());
     renumber_contacts(contact, cloth, points.clone(), kept);
     contact.ground.set_anchors(points.start..points.start + kept.len() as u32, &state.anchor);
+    let number = |point: PointId| kept.binary_search(&point.0).ok().map(|at| PointId(at as u32));
+    links.close_up(ClothId(cloth as u32), number, (&model.cloths, &model.colliders))
 }
 
 /// The row of a point once an object, whose rows were `before`, has kept only some places; `None` if it is gone.
@@ -280,7 +297,8 @@ fn renumber_contacts<R: Real>(
     bounds.unwrap_or_default().fill(true);
     contact.active_windows[cloth] = [0.0; 2];
     let number = |row: u32| number_after(row, &before, kept);
-    for list in contact.collider_contacts.iter_mut().filter(|list| list.cloth == cloth) {
+    let of_cloth = contact.lists_of(cloth);
+    for list in &mut contact.collider_contacts[of_cloth] {
         list.clear();
         list.depenetration.renumber(number);
     }

@@ -23,8 +23,13 @@ pub struct Crowd {
 }
 
 impl Crowd {
-    /// That of an object; `None` where new particles need not know of others.
-    pub fn of(cloth: &ClothFrame, places: impl Iterator<Item = Vector3<f64>>) -> Option<Self> {
+    /// That of an object, of its particles at `places` that are near new ones between two corners; `None` where new particles
+    /// need not know of others.
+    pub fn of(
+        cloth: &ClothFrame,
+        places: impl Iterator<Item = Vector3<f64>>,
+        [low, high]: [Vector3<f64>; 2],
+    ) -> Option<Self> {
         let own = &cloth.self_collision;
         let pruned = 2.0 * own.thickness * cloth.overlap_pruning;
         let touching = if own.on { 2.0 * own.thickness } else { 0.0 };
@@ -33,7 +38,10 @@ impl Crowd {
         if crowd.edge() <= 0.0 {
             return None;
         }
-        places.for_each(|place| crowd.add(place));
+        let (low, high) = (low.add_scalar(-crowd.edge()), high.add_scalar(crowd.edge()));
+        let is_near =
+            |place: &Vector3<f64>| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis]);
+        places.filter(is_near).for_each(|place| crowd.add(place));
         Some(crowd)
     }
 

@@ -76,7 +76,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         sweeps: if frame.fields_per_substep { f64::from(schedule.substeps) } else { 1.0 },
     });
     let slowed = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
-        cloth.boundary.triangles.is_empty() && kept_share(settings, 1.0, 1.0) < 1.0
+        !cloth.has_faces && kept_share(settings, 1.0, 1.0) < 1.0
     };
     let slowed = solver.model.cloths.iter().zip(&frame.cloths).filter(slowed);
     let slowed: usize = slowed.map(|(cloth, _)| cloth.points().len()).sum();

@@ -47,7 +47,7 @@ pub fn link_sweep<R: Real>(frame: &FrameInput, at: usize, h: f64) -> (LinkSweep<
         // Of the motion along the surface in a step, friction keeps a share; the rest loads a spring and a damper in turn.
         let friction = constraint.friction.clamp(0.0, 1.0);
         let kept = (1.0 - friction) * h / ((1.0 - friction) * h + friction * COUNT_PERIOD);
-        let taken = 1.0 - kept.powf(1.0 / f64::from(sweeps));
+        let taken = 1.0 - libm::pow(kept, 1.0 / f64::from(sweeps));
         // A friction of 1 locks, however weak the link is.
         let share = tangent.0 / (tangent.0 + (1.0 - tangent.0) * kept).max(f64::MIN_POSITIVE);
         tangent = (share * taken, tangent.1 * kept / (1.0 - kept).max(f64::MIN_POSITIVE));

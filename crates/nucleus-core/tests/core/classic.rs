@@ -4,7 +4,7 @@
 use crate::scenes::{Vec3, grid};
 use nucleus_core::{
     COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, LinkOrder,
-    Mass, ModelBuilder, ResistanceModel, Solver, StateView, Surface,
+    Mass, ModelBuilder, Pin, PointId, ResistanceModel, Solver, StateView, Surface,
 };
 
 const CLOTH: ClothId = ClothId(0);
@@ -295,6 +295,16 @@ fn a_start_inside_the_thickness_is_kept() {
         println!("above {above}: {still} of {} points never rise by more than 0.001", on_table.len());
         assert!(2 * still > on_table.len(), "{still} of {}", on_table.len());
     }
+}
+
+#[test]
+fn a_pinned_point_that_starts_in_the_table_stays_at_its_pin() {
+    let (mut solver, mut input) = sheet_on_table(0.0, 0.0);
+    let pinned = solver.point(CLOTH, 4);
+    input.pins = vec![Pin { cloth: CLOTH, point: PointId(4), start: pinned, end: pinned }];
+    solver.step(&input, &mut ());
+    assert_eq!(solver.point(CLOTH, 4), pinned);
+    assert_ne!(solver.point(CLOTH, 10).y, pinned.y);
 }
 
 #[test]

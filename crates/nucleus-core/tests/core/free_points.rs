@@ -2,8 +2,9 @@
 
 use crate::scenes::{Vec3, built, cuboid, frame, ground, physical, sphere, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, Elements, Faces, FrameInput, GroundPlane, Mass,
-    ModelBuilder, ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, ConstraintFrame, Elements, Faces, FrameInput,
+    GroundPlane, Link, LinkSide, Mass, ModelBuilder, PointId, ResistanceModel, SelfCollision, Solver, Start,
+    StateView, Surface,
 };
 
 const SPRAY: ClothId = ClothId(0);
@@ -250,6 +251,30 @@ fn the_motion_of_a_free_point_does_not_depend_on_the_others_or_their_order() {
     let mixed: Vec<usize> = (0..count).map(|at| at * 701 % count).collect();
     assert_eq!(run(&forward), run(&backward));
     assert_eq!(run(&forward), run(&mixed));
+}
+
+#[test]
+fn a_constraint_of_other_objects_does_not_change_a_bit_of_free_points() {
+    let run = |is_tied: bool| {
+        let mut builder = built(cloud(400, 20.0), [sphere(0.3, Vec3::zeros())]);
+        let other = particles(vec![Vec3::y() * 9.0], Vec::new(), ClothLists::NONE);
+        builder.cloth(other).expect("a point");
+        let mut solver = Solver::<f32>::new(builder, 1);
+        let (_, mut input) = rain();
+        input.cloths.push(ClothFrame { collide: false, ..spray() });
+        let hold =
+            Link::new([LinkSide::point(ClothId(1), PointId(0)), LinkSide::Space(Vec3::y() * 9.0)], 0.0);
+        if is_tied {
+            input.constraints =
+                vec![ConstraintFrame { formed: Some(vec![hold]), ..ConstraintFrame::default() }];
+        }
+        (0..12).for_each(|_| _ = solver.step(&input, &mut ()));
+        (places(&solver, 400), solver.point(ClothId(1), 0).y)
+    };
+    let (free, fallen) = run(false);
+    let (beside, held) = run(true);
+    assert!(fallen < 8.9 && held > 8.9, "{fallen} and {held}");
+    assert_eq!(free, beside);
 }
 
 #[test]

@@ -57,6 +57,25 @@ fn births_happen_in_the_order_of_their_times_however_they_are_given() {
     assert_eq!((state, report.births, report.sanitized.count), (expected, 3, 0));
 }
 
+#[test]
+fn births_of_a_frame_without_a_valid_duration_are_refused() {
+    let mut builder = ModelBuilder::new();
+    let particles = Particles { capacity: 8, ..Particles::default() };
+    builder.cloth(cloth(&[Vec3::zeros()], particles)).expect("good particles");
+    let mut solver: Solver = Solver::new(builder, 1);
+    let birth = |at: f64| Birth {
+        cloth: BEADS,
+        time: 0.5,
+        position: Vec3::x() * at,
+        velocity: Vec3::zeros(),
+        lifespan: f64::INFINITY,
+    };
+    let births = vec![birth(1.0), birth(f64::NAN), birth(2.0)];
+    let input = FrameInput { duration: 0.0, births, ..frame(4, physical(24.0)) };
+    let report = solver.step(&input, &mut ());
+    assert_eq!((report.births, report.births_refused), (0, 3));
+}
+
 /// An event of no effect.
 const NOTHING: CollisionEvent = CollisionEvent {
     count: 1,

@@ -17,6 +17,7 @@ mod invalid_particles;
 mod laws;
 mod lifecycle;
 mod link_order;
+mod linked_particles;
 mod links;
 mod liquids;
 mod never_stuck;

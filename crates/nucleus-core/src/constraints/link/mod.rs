@@ -23,6 +23,7 @@
 //! | links on surfaces, and sliding | [`surface`], [`topology`], `placed.rs`, `gradient.rs` |
 //! | links that are shorter than contact allows | `contact_distance.rs` |
 //! | broken links | [`glue`], [`tear`] |
+//! | links of particles that die | `deaths.rs` |
 //! | edges that resist folding | [`fold`] |
 //! | forces, damping and drag along links | [`velocity`] |
 //! | which elements do not collide because they are joined | [`Links::clusters`](lists::Links::clusters) |
@@ -32,6 +33,7 @@
 pub mod batches;
 pub mod combined;
 mod contact_distance;
+mod deaths;
 pub mod ends;
 pub mod fold;
 pub mod glue;

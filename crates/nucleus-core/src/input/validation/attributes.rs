@@ -40,7 +40,7 @@ pub(super) fn sanitize_settings(frame: &mut FrameInput) -> bool {
     let mut replaced = sanitize_vectors([&mut frame.gravity, &mut frame.wind]);
     replaced |= sanitize_numbers([
         (&mut frame.air_density, 0.0),
-        (&mut frame.collision_iterations, 1.0),
+        (&mut frame.collision_iterations, default.collision_iterations),
         (&mut frame.wind_noise, 0.0),
         (&mut frame.layer_range, default.layer_range),
         (&mut frame.self_collision_iterations, default.self_collision_iterations),
