@@ -9,8 +9,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nucleus_core::{
-    ClothFrame, ColliderId, ConstraintFrame, FrameInput, Link, LinkSide, ModelBuilder, PointId, Solver,
-    StateView, StepObserver, SubstepIndex,
+    Cloth, ClothFrame, ClothLists, ColliderId, ConstraintFrame, Elements, FrameInput, Link, LinkSide, Mass,
+    ModelBuilder, PointId, SelfCollision, Solver, StateView, StepObserver, SubstepIndex,
 };
 use scenes::links::point;
 
@@ -85,10 +85,29 @@ fn tied_drape() -> (ModelBuilder, FrameInput) {
     (builder, input)
 }
 
+/// Two sheets that lie on each other and on the ground.
+fn stack() -> (ModelBuilder, FrameInput) {
+    let mut builder = ModelBuilder::new();
+    for height in [0.005, 0.01] {
+        let mut sheet = scenes::grid(33, 33, scenes::Vec3::x(), scenes::Vec3::z());
+        sheet.positions.iter_mut().for_each(|p| p.y = height);
+        let lists = ClothLists { stretch: true, self_collision: true, ..ClothLists::NONE };
+        builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), lists)).expect("a good mesh");
+    }
+    let own = SelfCollision { on: true, thickness: 0.0025, elements: Elements::Faces, edges: true };
+    let cloth = ClothFrame { thickness: 0.0025, self_collision: own, ..scenes::still() };
+    let input = FrameInput {
+        plane: Some(scenes::ground(0.3)),
+        cloths: vec![cloth; 2],
+        ..scenes::frame(3, scenes::physical(48.0))
+    };
+    (builder, input)
+}
+
 // One test, because the count is of the whole program.
 #[test]
 fn a_warm_substep_allocates_nothing() {
-    for (name, (builder, input)) in [("drape", drape()), ("tied", tied_drape())] {
+    for (name, (builder, input)) in [("drape", drape()), ("tied", tied_drape()), ("stack", stack())] {
         assert_eq!(allocations(builder, input), 0, "allocations in two substeps of the 61st frame: {name}");
     }
 }

@@ -69,6 +69,16 @@ impl Aabb {
         }
     }
 
+    /// The box moved by a vector in metres, without care for rounding.
+    #[inline(always)]
+    pub fn translate(self, [x, y, z]: [f32; 3]) -> Self {
+        let by = [x, y, z, 0.0];
+        Self {
+            low: std::array::from_fn(|k| self.low[k] + by[k]),
+            high: std::array::from_fn(|k| self.high[k] + by[k]),
+        }
+    }
+
     /// Whether two moving elements may overlap, each given by its boxes at the start and at the end of linear
     /// motion. Boxes that are separated along one axis at both ends are separated throughout.
     #[inline(always)]

@@ -188,14 +188,7 @@ fn find_candidates<R: Real>(
     refresh: RefreshKind,
     pool: &ThreadPool,
 ) {
-    let widest = cloth_contacts
-        .materials
-        .iter()
-        .flatten()
-        .map(|material| material.thickness * material.adhesion_range)
-        .fold(0.0, f64::max);
-    let margin = widest as f32 * 0.5 * (1.0 + 1e-5);
-    cloth_contacts.update_bounds(&input, margin, refresh, pool);
+    cloth_contacts.update_bounds(&input, refresh, pool);
     if !refresh.is_incremental() && cloth_contacts.untangling.may_exist() {
         let ClothContacts { elements, materials, untangling, buffers, .. } = cloth_contacts;
         let bounds = (&buffers.bounds, &buffers.group_bounds[..]);
@@ -203,7 +196,8 @@ fn find_candidates<R: Real>(
     }
     let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
         cloth_contacts;
-    let SearchBuffers { bounds, group_bounds, groups, new_bounds, tasks, has_violations, .. } = buffers;
+    let SearchBuffers { bounds, group_bounds, margins, groups, new_bounds, tasks, has_violations, .. } =
+        buffers;
     cache.remove(&Replaced { bounds_violated, has_violations }, pool);
     let search = ClothSearch {
         elements,
@@ -212,18 +206,14 @@ fn find_candidates<R: Real>(
         group_bounds,
         untangling,
         input,
-        margin,
+        margins,
         bounds_violated,
         new_bounds,
     };
     for groups in groups.chunks(GROUPS_PER_TASK * TASKS_AT_A_TIME) {
         let chunks = groups.len().div_ceil(GROUPS_PER_TASK);
         tasks.resize_with(tasks.len().max(chunks), FoundContacts::default);
-        let own = DisjointSlice::new(tasks);
-        pool.parallel_for(chunks, |task| {
-            // SAFETY: every task has its own.
-            #[allow(unsafe_code)]
-            let [found] = (unsafe { own.run(task as u32..task as u32 + 1) }) else { return };
+        pool.for_each_mut(&mut tasks[..chunks], |task, found| {
             found.clear();
             let groups = groups.chunks(GROUPS_PER_TASK).nth(task).unwrap_or_default();
             search.search_groups(groups, found);
@@ -238,15 +228,19 @@ fn find_candidates<R: Real>(
 impl<R: Real> ClothSearch<'_, R> {
     /// Finds all contacts of the elements of some groups that have a new bound.
     fn search_groups(&self, groups: &[u32], found: &mut FoundContacts<R>) {
-        let mut new = std::mem::take(&mut found.new_elements);
+        let [mut own, mut shifted] = std::mem::take(&mut found.new_elements);
         let mut waiting: Option<ClothPair<'_, R>> = None;
         for &group in groups {
             let ours = self.group(group);
-            new.fill(self, &ours);
-            let [start, end] = new.swept_box;
-            let target = start.union(end);
+            own.fill(self, &ours);
             for cloth in 0..self.input.cloths.len() {
                 let Some(pair) = ClothPair::new(self, [ours.first_edge.0, cloth]) else { continue };
+                let swept_box = pair.in_their_space(&own.swept_box);
+                let target = swept_box[0].union(swept_box[1]);
+                if !self.elements.bounds(cloth).overlaps(&target) {
+                    continue;
+                }
+                let new = pair.elements_in_their_space(&own, &mut shifted);
                 // Pairs of several groups together fill the lanes of the narrow phase.
                 if let Some(waiting) = &waiting
                     && (waiting.cloths != pair.cloths || found.has_many_overlaps())
@@ -254,8 +248,8 @@ impl<R: Real> ClothSearch<'_, R> {
                     waiting.find_contacts(found);
                 }
                 self.elements.query_cloth(cloth, &target, |other| {
-                    if Aabb::may_overlap(&new.swept_box, &self.elements.swept_boxes[other as usize]) {
-                        pair.test_boxes((&ours, &new), &self.group(other), found);
+                    if Aabb::may_overlap(&swept_box, &self.elements.swept_boxes[other as usize]) {
+                        pair.test_boxes((&ours, new), &self.group(other), found);
                     }
                 });
                 waiting = Some(pair);
@@ -264,6 +258,6 @@ impl<R: Real> ClothSearch<'_, R> {
         if let Some(waiting) = waiting {
             waiting.find_contacts(found);
         }
-        found.new_elements = new;
+        found.new_elements = [own, shifted];
     }
 }

@@ -242,13 +242,7 @@ impl<R: Real, const N: usize, const M: usize> ContactTasks<R, N, M> {
     }
 
     fn for_tasks(&mut self, pool: &ThreadPool, work: impl Fn(&mut ContactTask<R, N, M>) + Sync) {
-        let (count, tasks) = (self.tasks.len(), DisjointSlice::new(&mut self.tasks));
-        pool.parallel_for(count, |task| {
-            // SAFETY: every task is run once.
-            #[allow(unsafe_code)]
-            let [task] = (unsafe { tasks.run(task as u32..task as u32 + 1) }) else { return };
-            work(task);
-        });
+        pool.for_each_mut(&mut self.tasks, |_, task| work(task));
     }
 
     /// Colours the tasks with contacts. Those without are dropped once they are more than blocks in space have neighbours.

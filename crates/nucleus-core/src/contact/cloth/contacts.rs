@@ -80,7 +80,7 @@ impl<R: Real> ClothContacts<R> {
         } = self;
         let rows = points.start as usize..points.end as usize;
         buffers.bounds.close_up(rows.clone(), kept);
-        buffers.bounds_margin = None;
+        buffers.group_margins.clear();
         local_anchors.clear();
         close_up(&mut interval_start[rows.clone()], kept);
         close_up(&mut trajectories.origin[rows.clone()], kept);
@@ -144,20 +144,31 @@ impl<R: Real> ClothContacts<R> {
         self.materials.iter().any(Option::is_some)
     }
 
+    /// Sets the margin of the boxes of each cloth: half of what its own elements reach.
+    fn set_margins(&mut self) {
+        let Self { materials, buffers: SearchBuffers { margins, .. }, .. } = self;
+        let cloths = materials.len().isqrt();
+        let reach = |material: &ContactMaterial<R>| material.thickness * material.adhesion_range;
+        let of_cloth = |cloth: usize| materials[cloth * (cloths + 1)].as_ref().map_or(0.0, reach);
+        margins.clear();
+        margins.extend((0..cloths).map(|cloth| of_cloth(cloth) as f32 * 0.5 * (1.0 + 1e-5)));
+    }
+
     /// Updates the bounds of points, and of the groups that contain a point whose bound has changed. Finds which points of
     /// each group violated theirs, and lists the groups to be searched: those that have any.
     pub(super) fn update_bounds(
         &mut self,
         input: &SearchInput<'_, R>,
-        margin: f32,
         refresh: RefreshKind,
         pool: &ThreadPool,
     ) {
+        self.set_margins();
         self.update_points(input, refresh, pool);
-        self.update_groups(input.cloths, margin, pool);
-        let Self { elements, buffers: SearchBuffers { groups, new_bounds, .. }, local_anchors, .. } = self;
+        self.update_groups(input.cloths, pool);
+        let Self { elements, buffers, local_anchors, .. } = self;
+        let SearchBuffers { bounds, groups, new_bounds, .. } = buffers;
         elements.refit(pool);
-        local_anchors.set_extent(elements.extent());
+        local_anchors.set_extent(elements.extent(&bounds.origins));
         groups.clear();
         groups.extend((0..).zip(&*new_bounds).filter(|(_, new)| **new != NewBounds::None).map(|(at, _)| at));
     }
@@ -170,7 +181,7 @@ impl<R: Real> ClothContacts<R> {
         let SearchBuffers { bounds, has_changed, has_violations, .. } = buffers;
         let origin = anchors.first().copied().unwrap_or_default();
         if !refresh.is_incremental() {
-            bounds.set_origin(origin);
+            bounds.origins.set(cloths, anchors);
         }
         has_changed.clear();
         has_changed.resize(anchors.len(), false);
@@ -178,7 +189,7 @@ impl<R: Real> ClothContacts<R> {
         has_violations.resize_with(elements.blocks as usize, AtomicBool::default);
         let (bounds, local_anchors) = (bounds.shared(anchors.len()), local_anchors.shared(anchors));
         let has_changed = DisjointSlice::new(has_changed);
-        for cloth in cloths {
+        for (index, cloth) in (0..).zip(cloths) {
             // The rows of dead particles.
             bounds_violated[cloth.points().end as usize..cloth.blocks.rows().end as usize].fill(false);
             pool.parallel_for(cloth.blocks.len(), |block| {
@@ -190,7 +201,7 @@ impl<R: Real> ClothContacts<R> {
                     // SAFETY: blocks do not overlap.
                     #[allow(unsafe_code)]
                     unsafe {
-                        has_changed.set(row, bounds.set(row, &trajectories.of(row), anchors[at]));
+                        has_changed.set(row, bounds.set([index, row], &trajectories.of(row), anchors[at]));
                         if is_violated {
                             local_anchors.set(row, local_anchor(anchors[at], origin));
                         }
@@ -205,13 +216,13 @@ impl<R: Real> ClothContacts<R> {
     }
 
     /// Updates the boxes of groups, and which of their points have new bounds.
-    fn update_groups(&mut self, cloths: &[ClothModel<R>], margin: f32, pool: &ThreadPool) {
+    fn update_groups(&mut self, cloths: &[ClothModel<R>], pool: &ThreadPool) {
         let Self { elements, bounds_violated, buffers, .. } = self;
-        let SearchBuffers { bounds, group_bounds, bounds_margin, has_changed, new_bounds, .. } = buffers;
+        let SearchBuffers { bounds, group_bounds, margins, group_margins, has_changed, new_bounds, .. } =
+            buffers;
         let groups = elements.groups.len();
         group_bounds.resize_with(groups, GroupBounds::default);
         new_bounds.resize(groups, NewBounds::None);
-        let all_change = bounds_margin.replace(margin) != Some(margin);
         let mut swept_boxes = std::mem::take(&mut elements.swept_boxes);
         let (boxes, group_bounds, new_bounds) = (
             DisjointSlice::new(&mut swept_boxes),
@@ -221,20 +232,23 @@ impl<R: Real> ClothContacts<R> {
         pool.parallel_for(groups.div_ceil(GROUPS_PER_UPDATE), |task| {
             for group in task * GROUPS_PER_UPDATE..groups.min((task + 1) * GROUPS_PER_UPDATE) {
                 let (at, points) = (group as u32, elements.points_of(group));
-                let changes = all_change || points.iter().any(|&point| has_changed[point as usize]);
+                let cloth = elements.groups[group].cloth as usize;
+                let has_new_margin = group_margins.get(cloth) != Some(&margins[cloth]);
+                let changes = has_new_margin || points.iter().any(|&point| has_changed[point as usize]);
                 // SAFETY: every group is in one task.
                 #[allow(unsafe_code)]
                 unsafe {
                     new_bounds.set(at, elements.new_bounds_of(group, bounds_violated));
                     if changes && let [slot] = group_bounds.run(at..at + 1) {
-                        let ClothGroup { cloth, group } = &elements.groups[group];
-                        boxes.set(at, bounds.bound(points, margin));
-                        slot.fill(&cloths[*cloth as usize].boundary, group, bounds, margin);
+                        let ClothGroup { group, .. } = &elements.groups[group];
+                        boxes.set(at, bounds.bound(points, margins[cloth]));
+                        slot.fill(&cloths[cloth].boundary, group, bounds, margins[cloth]);
                     }
                 }
             }
         });
         elements.swept_boxes = swept_boxes;
+        group_margins.clone_from(margins);
     }
 }
 
@@ -243,8 +257,10 @@ impl<R: Real> ClothContacts<R> {
 pub struct SearchBuffers<R> {
     pub(super) bounds: ElementBounds,
     pub(super) group_bounds: Vec<GroupBounds>,
-    /// The margin in metres of all group bounds; `None` if they are out of date.
-    bounds_margin: Option<f32>,
+    /// The margin of the boxes of each cloth in metres.
+    pub(super) margins: Vec<f32>,
+    /// That of its group bounds as they are; empty if they are out of date.
+    group_margins: Vec<f32>,
     /// Whether the boxes of each point have changed.
     has_changed: Vec<bool>,
     /// The groups that are searched.
@@ -269,7 +285,8 @@ impl<R> Default for SearchBuffers<R> {
         Self {
             bounds: ElementBounds::default(),
             group_bounds: Vec::new(),
-            bounds_margin: None,
+            margins: Vec::new(),
+            group_margins: Vec::new(),
             has_changed: Vec::new(),
             groups: Vec::new(),
             new_bounds: Vec::new(),

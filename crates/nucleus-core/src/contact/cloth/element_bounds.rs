@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use crate::contact::bvh::{Aabb, SweptBox};
 use crate::contact::ccd::CERTIFIED_GAP;
+use crate::contact::cloth::local_origins::LocalOrigins;
 use crate::contact::cloth::motion_bounds::Trajectory;
 use crate::contact::cloth::swept_points::{SweptPoints, swept_point};
 use crate::math::Real;
@@ -17,8 +18,8 @@ const REST_GAP_SHARE: f32 = 0.5;
 /// The swept positions of all points, and their boxes.
 #[derive(Debug, Default)]
 pub struct ElementBounds {
-    /// The origin of all swept positions in metres.
-    origin: [f64; 3],
+    /// The origin of each cloth's swept positions.
+    pub origins: LocalOrigins,
     swept_points: SweptPoints,
     /// Boxes around the balls at both ends.
     boxes: Vec<SweptBox>,
@@ -26,7 +27,7 @@ pub struct ElementBounds {
 
 /// All points, to be set in tasks.
 pub struct SharedBounds<'a> {
-    origin: [f64; 3],
+    origins: &'a LocalOrigins,
     swept_points: DisjointSlice<'a, [[f32; 4]; 2]>,
     boxes: DisjointSlice<'a, SweptBox>,
 }
@@ -42,21 +43,12 @@ pub struct ContactDistance {
 }
 
 impl ElementBounds {
-    /// Sets the origin of all swept positions. All points are to be updated after it.
-    pub fn set_origin(&mut self, origin: [f64; 3]) {
-        self.origin = origin;
-    }
-
     /// A view of `points` points through which tasks set points of their own.
     pub fn shared(&mut self, points: usize) -> SharedBounds<'_> {
-        let Self { origin, swept_points, boxes } = self;
+        let Self { origins, swept_points, boxes } = self;
         swept_points.resize(points);
         boxes.resize(points, [Aabb::EMPTY; 2]);
-        SharedBounds {
-            origin: *origin,
-            swept_points: swept_points.shared(),
-            boxes: DisjointSlice::new(boxes),
-        }
+        SharedBounds { origins, swept_points: swept_points.shared(), boxes: DisjointSlice::new(boxes) }
     }
 
     /// Follows the particles of an object whose rows are closed up; `kept` are the places of those that remain.
@@ -67,7 +59,7 @@ impl ElementBounds {
         self.swept_points.close_up(rows, kept);
     }
 
-    /// The swept box of some points, inflated by a margin.
+    /// The swept box of some points of one cloth, inflated by a margin.
     #[inline(always)]
     pub fn bound(&self, points: &[u32], margin: f32) -> SweptBox {
         let [mut start, mut end] = [Aabb::EMPTY; 2];
@@ -85,15 +77,19 @@ impl ElementBounds {
 }
 
 impl SharedBounds<'_> {
-    /// Sets a point from its trajectory. `anchor` is in metres. Returns whether its boxes have changed.
+    /// Sets a point of a cloth from its trajectory. `anchor` is in metres. Returns whether its boxes have changed.
     ///
     /// # Safety
     /// No other task of this loop uses the point.
     #[inline]
     #[allow(unsafe_code)]
-    pub unsafe fn set<R: Real>(&self, point: u32, trajectory: &Trajectory<R>, anchor: [f64; 3]) -> bool {
-        let anchor = std::array::from_fn(|axis| anchor[axis] - self.origin[axis]);
-        let ends = swept_point(trajectory, anchor);
+    pub unsafe fn set<R: Real>(
+        &self,
+        [cloth, point]: [u32; 2],
+        trajectory: &Trajectory<R>,
+        anchor: [f64; 3],
+    ) -> bool {
+        let ends = swept_point(trajectory, self.origins.relative(cloth as usize, anchor));
         let boxes = ends.map(|[x, y, z, radius]| Aabb::ball([x, y, z], radius));
         // SAFETY: as the caller ensures.
         unsafe {

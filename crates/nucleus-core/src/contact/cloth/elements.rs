@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use crate::bytes::checkpoint_struct;
 use crate::contact::boundary::ElementGroup;
 use crate::contact::bvh::{Aabb, Bvh, SweptBox};
+use crate::contact::cloth::local_origins::LocalOrigins;
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::parallel::thread_pool::ThreadPool;
@@ -43,7 +44,7 @@ pub struct ElementGroups {
     pub bvhs: Vec<Bvh>,
     /// The first group of each cloth.
     first_groups: Vec<u32>,
-    /// The swept box of each group.
+    /// The swept box of each group, relative to the origin of its cloth.
     pub swept_boxes: Vec<SweptBox>,
     /// Whether each point belongs to no face.
     pub is_free_point: Vec<bool>,
@@ -126,19 +127,23 @@ impl ElementGroups {
         }
     }
 
-    /// The largest coordinate of any swept box, in metres.
-    pub fn extent(&self) -> f64 {
-        let coordinates = self.bvhs.iter().flat_map(|bvh| bvh.bounds().corners()).flatten();
-        coordinates.map(|x| f64::from(x.abs())).filter(|x| x.is_finite()).fold(0.0, f64::max)
+    /// The box of a cloth's groups, relative to its origin.
+    pub fn bounds(&self, cloth: usize) -> Aabb {
+        self.bvhs[cloth].bounds()
     }
 
-    /// Calls `found` with each group whose leaf overlaps a box, cloth by cloth.
-    #[inline]
-    pub fn query(&self, target: &Aabb, mut found: impl FnMut(u32)) {
-        (0..self.bvhs.len()).for_each(|cloth| self.query_cloth(cloth, target, &mut found));
+    /// The largest coordinate of any swept box in metres, relative to the origin of the first cloth.
+    pub fn extent(&self, origins: &LocalOrigins) -> f64 {
+        let of_cloth = |cloth: usize| {
+            let away = origins.shift([cloth, 0]).metres;
+            let corners = self.bounds(cloth).corners().into_iter();
+            corners.flat_map(move |corner| (0..3).map(move |axis| corner[axis].abs() + away[axis].abs()))
+        };
+        let coordinates = (0..self.bvhs.len()).flat_map(of_cloth).map(f64::from);
+        coordinates.filter(|x| x.is_finite()).fold(0.0, f64::max)
     }
 
-    /// Calls `found` with each group of one cloth whose leaf overlaps a box.
+    /// Calls `found` with each group of a cloth whose leaf overlaps a box, relative to its origin.
     #[inline]
     pub fn query_cloth(&self, cloth: usize, target: &Aabb, mut found: impl FnMut(u32)) {
         let first = self.first_groups[cloth];
@@ -150,12 +155,6 @@ impl ElementGroups {
         let ends = self.first_groups.iter().skip(1).copied().chain([self.groups.len() as u32]);
         let counts = self.first_groups.iter().zip(ends).map(|(&first, end)| (end - first) as usize);
         self.bvhs.iter().zip(counts).all(|(bvh, count)| bvh.covers(count))
-    }
-
-    /// The union of a group's boxes at both ends.
-    pub fn swept_bound(&self, group: u32) -> Aabb {
-        let [start, end] = self.swept_boxes[group as usize];
-        start.union(end)
     }
 
     /// Takes up the shape at rest, and builds the hierarchy over it.

@@ -18,8 +18,8 @@ pub struct FoundContacts<R> {
     pub point_edge: FoundPairs<R, 1, 2>,
     /// Points and points.
     pub point_point: FoundPairs<R, 1, 1>,
-    /// The elements with new bounds of the group that is searched.
-    pub(super) new_elements: NewElements,
+    /// The elements with new bounds of the group that is searched; and the same relative to the origin of another cloth.
+    pub(super) new_elements: [NewElements; 2],
 }
 
 /// Pairs of elements of one kind.
@@ -58,7 +58,7 @@ impl<R> Default for FoundContacts<R> {
             edge_edge: FoundPairs::default(),
             point_edge: FoundPairs::default(),
             point_point: FoundPairs::default(),
-            new_elements: NewElements::default(),
+            new_elements: Default::default(),
         }
     }
 }

@@ -1,18 +1,20 @@
 //! Detection of intersections: finds the edges that pierce faces, groups them into contours by union-find, and
 //! chooses a correction for each.
 
+use crate::contact::bvh::Aabb;
 use crate::contact::cloth::contacts::GROUPS_PER_TASK;
 use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::ElementGroups;
 use crate::contact::cloth::group_bounds::GroupBounds;
+use crate::contact::cloth::local_origins::OriginShift;
 use crate::contact::cloth::search::SearchInput;
 use crate::contact::cloth::untangling::{Correction, Intersection, Untangling, Wing, pierces};
 use crate::contact::material::ContactMaterial;
 use crate::contact::pair_filter::PairFilter;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub};
 use crate::model::ClothModel;
-use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::union_find::UnionFind;
 
 /// Finds all intersections at the start of the time step: the end is not certified yet, and what would pass on the way there
 /// is not to be untangled but stopped. Valid while the boxes of the last search are.
@@ -30,14 +32,9 @@ pub fn find_intersections<R: Real>(
         IntersectionSearch { elements, bounds, materials, cloths, anchors, displacement, strength, filter };
     let groups = elements.groups.len();
     let mut found = vec![Vec::new(); groups.div_ceil(GROUPS_PER_TASK)];
-    let (tasks, results) = (found.len(), DisjointSlice::new(&mut found));
-    pool.parallel_for(tasks, |task| {
-        // SAFETY: every task has its own.
-        #[allow(unsafe_code)]
-        let [found] = (unsafe { results.run(task as u32..task as u32 + 1) }) else { return };
+    pool.for_each_mut(&mut found, |task, found| {
         for group in task * GROUPS_PER_TASK..groups.min((task + 1) * GROUPS_PER_TASK) {
-            let swept_bound = elements.swept_bound(group as u32);
-            elements.query(&swept_bound, |other| search.find_between(group as u32, other, found));
+            (0..cloths.len()).for_each(|cloth| search.find_with(group as u32, cloth, found));
         }
     });
     untangling.intersections.clear();
@@ -64,14 +61,26 @@ struct IntersectionSearch<'a, R> {
 }
 
 impl<R: Real> IntersectionSearch<'_, R> {
-    /// All edges of one group that pierce a face of another.
-    fn find_between(&self, group: u32, other: u32, found: &mut Vec<Intersection>) {
-        let [ours, theirs] = [group, other].map(|group| &self.elements.groups[group as usize]);
-        let material = &self.materials[ours.cloth as usize * self.cloths.len() + theirs.cloth as usize];
-        let collides = material.as_ref().is_some_and(|material| material.strength == [R::ONE; 2]);
-        if !collides || !self.elements.swept_bound(other).overlaps(&self.elements.swept_bound(group)) {
+    /// All edges of a group that pierce a face of a cloth.
+    fn find_with(&self, group: u32, cloth: usize, found: &mut Vec<Intersection>) {
+        let own = self.elements.groups[group as usize].cloth as usize;
+        let material = &self.materials[own * self.cloths.len() + cloth];
+        if !material.as_ref().is_some_and(|material| material.strength == [R::ONE; 2]) {
             return;
         }
+        let shift = self.bounds.0.origins.shift([own, cloth]);
+        let swept_box = shift.apply(&self.elements.swept_boxes[group as usize], 0.0);
+        let [start, end] = swept_box;
+        self.elements.query_cloth(cloth, &start.union(end), |other| {
+            if Aabb::may_overlap(&swept_box, &self.elements.swept_boxes[other as usize]) {
+                self.find_between(group, other, &shift, found);
+            }
+        });
+    }
+
+    /// All edges of one group that pierce a face of another. `shift` leads to the origin of the other's cloth.
+    fn find_between(&self, group: u32, other: u32, shift: &OriginShift, found: &mut Vec<Intersection>) {
+        let [ours, theirs] = [group, other].map(|group| &self.elements.groups[group as usize]);
         let position = |point: u32| self.position(point);
         let has_full_strength = |points: &[u32]| {
             self.strength.is_empty() || points.iter().all(|&p| self.strength[p as usize] >= R::ONE)
@@ -79,13 +88,14 @@ impl<R: Real> IntersectionSearch<'_, R> {
         let edges = &self.cloths[ours.cloth as usize].boundary.edges[ours.group.edges.clone()];
         let faces = &self.cloths[theirs.cloth as usize].boundary.triangles[theirs.group.triangles.clone()];
         let (bounds, of_groups) = self.bounds;
+        let back = bounds.origins.shift([theirs.cloth as usize, ours.cloth as usize]);
         let [ours, theirs] = [group, other].map(|group| &of_groups[group as usize]);
-        ours.edges.for_each_overlap(&self.elements.swept_boxes[other as usize], |edge| {
+        ours.edges.for_each_overlap(&back.apply(&self.elements.swept_boxes[other as usize], 0.0), |edge| {
             let edge = edges[edge];
             if !has_full_strength(&edge) {
                 return;
             }
-            theirs.triangles.for_each_overlap(&bounds.bound(&edge, 0.0), |face| {
+            theirs.triangles.for_each_overlap(&shift.apply(&bounds.bound(&edge, 0.0), 0.0), |face| {
                 let face = faces[face];
                 let is_joined =
                     face.iter().any(|point| edge.contains(point)) || self.filter.excludes(&edge, &face);
@@ -200,10 +210,11 @@ impl Untangling {
                 *contour = contour.map(|before| before.min(least));
             }
         }
-        for (_, piece) in smallest.into_iter().flatten().filter(|&(size, _)| size < u32::MAX) {
-            (0..points.len() as u32).filter(|&point| pieces.find(point) == piece).for_each(|point| {
-                is_on_wrong_side[point as usize] = true;
-            });
+        let mut is_wrong_piece = vec![false; points.len()];
+        let found = smallest.into_iter().flatten().filter(|&(size, _)| size < u32::MAX);
+        found.for_each(|(_, piece)| is_wrong_piece[piece as usize] = true);
+        for (point, is_wrong) in (0..).zip(is_on_wrong_side.iter_mut()) {
+            *is_wrong |= is_wrong_piece[pieces.find(point) as usize];
         }
         for intersection in intersections {
             let [a, b] = intersection.edge.map(|point| pieces.find(point));
@@ -236,70 +247,5 @@ impl Untangling {
         for face in faces().filter(|face| face.iter().any(|&point| near[point as usize])) {
             face.iter().for_each(|&point| points[point as usize] = true);
         }
-    }
-}
-
-/// Disjoint sets of points. A set is named by its lowest point.
-pub struct UnionFind {
-    /// A point of the same set that is no higher; a root points to itself.
-    parent: Vec<u32>,
-    /// The size of each root's set.
-    sizes: Vec<u32>,
-}
-
-impl UnionFind {
-    /// `points` sets of one point each.
-    pub fn new(points: usize) -> Self {
-        Self { parent: (0..points as u32).collect(), sizes: vec![1; points] }
-    }
-
-    /// The set of a point.
-    pub fn find(&mut self, mut point: u32) -> u32 {
-        while self.parent[point as usize] != point {
-            let next = self.parent[point as usize];
-            self.parent[point as usize] = self.parent[next as usize];
-            point = next;
-        }
-        point
-    }
-
-    /// The number of points in a set.
-    pub fn size(&self, set: u32) -> u32 {
-        self.sizes[set as usize]
-    }
-
-    /// Gives all points of a set the value that most of them have.
-    pub fn take_majority(&mut self, values: &mut [bool]) {
-        let mut yes = vec![0u32; values.len()];
-        for point in 0..values.len() as u32 {
-            yes[self.find(point) as usize] += u32::from(values[point as usize]);
-        }
-        for point in 0..values.len() as u32 {
-            let set = self.find(point);
-            values[point as usize] = yes[set as usize] * 2 > self.size(set);
-        }
-    }
-
-    /// Joins the sets of two points.
-    pub fn union(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        if a != b {
-            self.parent[a.max(b) as usize] = a.min(b);
-            self.sizes[a.min(b) as usize] += self.sizes[a.max(b) as usize];
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_set_is_named_by_its_lowest_point_and_counts_its_points() {
-        let mut sets = UnionFind::new(6);
-        [(5, 3), (1, 2), (3, 2), (4, 4)].into_iter().for_each(|(a, b)| sets.union(a, b));
-        let of: Vec<u32> = (0..6).map(|point| sets.find(point)).collect();
-        assert_eq!(of, [0, 1, 1, 1, 4, 1]);
-        assert_eq!((sets.size(0), sets.size(1), sets.size(4)), (1, 4, 1));
     }
 }

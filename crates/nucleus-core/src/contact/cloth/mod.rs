@@ -8,7 +8,7 @@
 //! | the trajectory and radius that bound each point over a candidate interval | [`motion_bounds`] |
 //! | broad phase: predicts motion bounds, and searches where points violate theirs | [`broad_phase`] |
 //! | which elements can touch while all points keep their bounds | [`search`], [`query`], [`new_elements`], [`element_bounds`], [`group_bounds`] |
-//! | which of them come near, and their normals | [`near_pairs`], [`swept_points`], [`normals`] |
+//! | which of them come near, and their normals | [`near_pairs`], [`swept_points`], [`local_origins`], [`normals`] |
 //! | what a search task finds | [`found_contacts`] |
 //! | the contacts by kind, in tasks that threads share | [`cache`], [`contact_list`], [`contact_task`] |
 //! | one contact | [`contact`] |
@@ -33,6 +33,7 @@ pub mod frozen;
 mod group_bounds;
 pub mod intersections;
 pub mod local_anchors;
+mod local_origins;
 pub mod motion_bounds;
 mod near_pairs;
 mod new_elements;

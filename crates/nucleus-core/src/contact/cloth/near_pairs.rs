@@ -3,14 +3,17 @@
 //! Most pairs stay apart along the line between their centroids; of the others the least distance over the candidate interval
 //! is computed, and that at rest, which limits the thickness of neighbours.
 
+use crate::contact::bvh::SweptBox;
 use crate::contact::ccd::CERTIFIED_GAP;
 use crate::contact::closest_lanes::{Positions, closest, interpolate, of_lane};
 use crate::contact::cloth::contact::{Candidate, ContactKind, ContactParams};
 use crate::contact::cloth::element_bounds::ContactDistance;
 use crate::contact::cloth::found_contacts::{FoundContacts, FoundPairs};
+use crate::contact::cloth::local_origins::{OriginShift, ROUNDING};
+use crate::contact::cloth::new_elements::NewElements;
 use crate::contact::cloth::normals::SetNormals;
 use crate::contact::cloth::search::{ClothSearch, SearchInput};
-use crate::contact::cloth::swept_points::{ElementPoints, ROUNDING};
+use crate::contact::cloth::swept_points::{ElementPoints, PairPoints, ShiftedCloth};
 use crate::contact::material::{ContactMaterial, MIN_THICKNESS};
 use crate::contact::narrow_phase::shortest_line;
 use crate::math::kernel::{self, Kernel};
@@ -26,6 +29,10 @@ pub(super) struct ClothPair<'a, R> {
     thickness_and_range: [f32; 2],
     /// Positions at rest, where elements can be neighbours.
     rest: Option<&'a [[f32; 3]]>,
+    /// From our origin to theirs, between two cloths.
+    shift: Option<OriginShift>,
+    /// How far the two reach to each other beyond the margins of their boxes, in metres.
+    margin: f32,
 }
 
 impl<'a, R: Real> ClothPair<'a, R> {
@@ -35,13 +42,39 @@ impl<'a, R: Real> ClothPair<'a, R> {
         // Free points have no shape at rest, so they have no neighbours.
         let is_shaped =
             cloths[0] == cloths[1] && !search.input.cloths[cloths[0]].boundary.triangles.is_empty();
+        let reach = (material.thickness * material.adhesion_range) as f32 * (1.0 + 1e-5);
         Some(Self {
             search,
             cloths,
             material,
             thickness_and_range: [material.thickness as f32, material.adhesion_range as f32],
             rest: is_shaped.then_some(&search.elements.rest_positions[..]),
+            shift: (cloths[0] != cloths[1]).then(|| search.bounds.origins.shift(cloths)),
+            margin: (reach - search.margins[cloths[0]] - search.margins[cloths[1]]).max(0.0),
         })
+    }
+
+    /// A swept box of ours among theirs: relative to their origin, and as far as the two reach.
+    pub(super) fn in_their_space(&self, swept_box: &SweptBox) -> SweptBox {
+        self.shift.map_or(*swept_box, |shift| shift.apply(swept_box, self.margin))
+    }
+
+    /// The same for elements of ours with new bounds; `shifted` is a buffer.
+    pub(super) fn elements_in_their_space<'b>(
+        &self,
+        new: &'b NewElements,
+        shifted: &'b mut NewElements,
+    ) -> &'b NewElements {
+        let Some(shift) = &self.shift else { return new };
+        shifted.fill_shifted(new, shift, self.margin);
+        shifted
+    }
+
+    /// The swept positions of both, relative to their origin.
+    fn swept_points(&self) -> PairPoints<'_> {
+        let ClothSearch { bounds, elements, .. } = self.search;
+        let shifted = |shift| ShiftedCloth { of_point: &elements.cloth, cloth: self.cloths[0] as u32, shift };
+        PairPoints { points: bounds.swept_points(), shifted: self.shift.map(shifted) }
     }
 
     /// Contacts of the pairs whose boxes overlap.
@@ -126,7 +159,7 @@ impl<R: Real, const N: usize, const M: usize> Kernel<f32> for NearPairs<'_, R, N
         let Self { pair, found: FoundPairs { candidates, overlapping, .. } } = self;
         let lanes = 4 * L::GROUPS;
         let [thickness, range] = pair.thickness_and_range;
-        let (points, share) = (pair.search.bounds.swept_points(), pair.search.input.interval_share as f32);
+        let (points, share) = (pair.swept_points(), pair.search.input.interval_share as f32);
         let mut near = 0;
         for first in (0..overlapping.len()).step_by(lanes) {
             let count = (overlapping.len() - first).min(lanes);

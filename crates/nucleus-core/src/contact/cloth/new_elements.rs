@@ -3,6 +3,7 @@
 
 use crate::contact::box_row::BoxRow;
 use crate::contact::bvh::{Aabb, SweptBox};
+use crate::contact::cloth::local_origins::OriginShift;
 use crate::contact::cloth::search::{ClothSearch, SearchedGroup};
 use crate::math::Real;
 
@@ -43,25 +44,45 @@ impl NewElements {
     /// Takes up the elements of a group that have a point with a new bound.
     pub(super) fn fill<R: Real>(&mut self, search: &ClothSearch<'_, R>, group: &SearchedGroup<'_>) {
         let Self { points, edges, triangles, swept_box } = self;
-        points.fill(search, group.points.as_chunks().0);
-        edges.fill(search, group.edges);
-        triangles.fill(search, group.triangles);
+        let margin = search.margins[group.first_edge.0];
+        points.fill(search, margin, group.points.as_chunks().0);
+        edges.fill(search, margin, group.edges);
+        triangles.fill(search, margin, group.triangles);
         *swept_box = [Aabb::EMPTY; 2];
         points.unite(swept_box);
         edges.unite(swept_box);
         triangles.unite(swept_box);
     }
+
+    /// Takes up the elements of another, relative to another origin and inflated by a margin.
+    pub(super) fn fill_shifted(&mut self, from: &Self, shift: &OriginShift, margin: f32) {
+        let Self { points, edges, triangles, swept_box } = self;
+        points.fill_shifted(&from.points, shift, margin);
+        edges.fill_shifted(&from.edges, shift, margin);
+        triangles.fill_shifted(&from.triangles, shift, margin);
+        *swept_box = shift.apply(&from.swept_box, margin);
+    }
 }
 
 impl<const N: usize> NewRow<N> {
-    fn fill<R: Real>(&mut self, search: &ClothSearch<'_, R>, elements: &[[u32; N]]) {
+    fn fill<R: Real>(&mut self, search: &ClothSearch<'_, R>, margin: f32, elements: &[[u32; N]]) {
         self.elements.clear();
         for (place, &points) in elements.iter().enumerate() {
             if search.has_new_bound(&points) {
-                let swept_box = search.bounds.bound(&points, search.margin);
+                let swept_box = search.bounds.bound(&points, margin);
                 self.elements.push(NewElement { points, place, swept_box });
             }
         }
+        self.boxes.fill(&self.elements, |element| element.swept_box);
+    }
+
+    fn fill_shifted(&mut self, from: &Self, shift: &OriginShift, margin: f32) {
+        self.elements.clear();
+        let shifted = |element: &NewElement<N>| NewElement {
+            swept_box: shift.apply(&element.swept_box, margin),
+            ..*element
+        };
+        self.elements.extend(from.elements.iter().map(shifted));
         self.boxes.fill(&self.elements, |element| element.swept_box);
     }
 

@@ -51,8 +51,8 @@ pub(super) struct ClothSearch<'a, R> {
     pub(super) untangling: &'a Untangling,
     pub(super) input: SearchInput<'a, R>,
     pub(super) group_bounds: &'a [GroupBounds],
-    /// In metres, by which all boxes are larger.
-    pub(super) margin: f32,
+    /// In metres by cloth, by which the boxes of its elements are larger.
+    pub(super) margins: &'a [f32],
     pub(super) bounds_violated: &'a [bool],
     /// By group.
     pub(super) new_bounds: &'a [NewBounds],

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use crate::contact::closest_lanes::{Positions, closest, interpolate, of_lane, scaled};
+use crate::contact::cloth::local_origins::{OriginShift, ROUNDING};
 use crate::contact::cloth::motion_bounds::Trajectory;
 use crate::math::{Lanes, Real, dot, sub};
 use crate::parallel::disjoint::DisjointSlice;
@@ -15,12 +16,9 @@ pub type ElementPoints<const N: usize, const M: usize> = ([u32; N], [u32; M]);
 /// The swept position of each point.
 #[derive(Debug, Default)]
 pub struct SweptPoints {
-    /// Position at the start and at the end in metres from a common origin, and the radius around both.
+    /// Position at the start and at the end in metres from the origin of its cloth, and the radius around both.
     ends: Vec<[[f32; 4]; 2]>,
 }
-
-/// Relative rounding error of a position.
-pub const ROUNDING: f32 = 1e-6;
 
 /// The positions of a point at the start and at the end, and the radius around both, from its trajectory. `anchor` is in
 /// metres from the origin.
@@ -50,7 +48,24 @@ impl SweptPoints {
     pub fn shared(&mut self) -> DisjointSlice<'_, [[f32; 4]; 2]> {
         DisjointSlice::new(&mut self.ends)
     }
+}
 
+/// The swept positions of the points of two cloths, or of one, relative to one origin.
+pub struct PairPoints<'a> {
+    pub points: &'a SweptPoints,
+    /// The cloth whose positions are relative to another origin, if there is one.
+    pub shifted: Option<ShiftedCloth<'a>>,
+}
+
+/// A cloth whose positions are shifted.
+pub struct ShiftedCloth<'a> {
+    /// The cloth of each point.
+    pub of_point: &'a [u32],
+    pub cloth: u32,
+    pub shift: OriginShift,
+}
+
+impl PairPoints<'_> {
     /// Lower bounds on the distances of up to eight pairs in metres, from a share of the candidate interval on.
     #[inline(always)]
     pub fn min_distances<L: Lanes<f32>, const N: usize, const M: usize>(
@@ -111,16 +126,38 @@ impl SweptPoints {
         let mut ends = [[L::splat(0.0); 4]; 2];
         for (end, rows) in ends.iter_mut().enumerate() {
             for (k, row) in rows.iter_mut().enumerate() {
-                *row = L::of_groups(|group| self.ends[point(4 * group + k) as usize][end]);
+                *row = L::of_groups(|group| self.points.ends[point(4 * group + k) as usize][end]);
             }
         }
-        let ([x, y, z, radius], [u, v, w, _]) = (L::transpose(ends[0]), L::transpose(ends[1]));
+        let ([mut x, mut y, mut z, mut radius], [mut u, mut v, mut w, _]) =
+            (L::transpose(ends[0]), L::transpose(ends[1]));
+        if let Some(shifted) = &self.shifted {
+            let [dx, dy, dz, rounding] = shifted.lanes::<L>(point);
+            (x, y, z, radius) = (x + dx, y + dy, z + dz, radius + rounding);
+            (u, v, w) = (u + dx, v + dy, w + dz);
+        }
         let mut start = [x, y, z];
         if share > 0.0 {
             let share = L::splat(share);
             start = [x + (u - x) * share, y + (v - y) * share, z + (w - z) * share];
         }
         SweptLanes { ends: [start, [u, v, w]], radius }
+    }
+}
+
+impl ShiftedCloth<'_> {
+    /// The shift of the point of each lane and its rounding error, in metres; zero for points of the other cloth.
+    #[inline(always)]
+    fn lanes<L: Lanes<f32>>(&self, point: impl Fn(usize) -> u32) -> [L; 4] {
+        let ([x, y, z], rounding) = (self.shift.metres, self.shift.rounding);
+        let mut rows = [L::splat(0.0); 4];
+        for (k, row) in rows.iter_mut().enumerate() {
+            *row = L::of_groups(|group| {
+                let is_shifted = self.of_point[point(4 * group + k) as usize] == self.cloth;
+                if is_shifted { [x, y, z, rounding] } else { [0.0; 4] }
+            });
+        }
+        L::transpose(rows)
     }
 }
 
@@ -215,11 +252,12 @@ mod tests {
         ) {
             let end = |[start, end]: [[f32; 4]; 2]| [start, if moves { end } else { start }];
             let ends = ends.into_iter().map(|ends| end(ends).map(|[x, y, z, radius]| [x, y, z, 0.1 * radius.abs()])).collect();
-            let points = SweptPoints { ends };
+            let points = &SweptPoints { ends };
+            let pairs = PairPoints { points, shifted: None };
             let edges: Vec<ElementPoints<2, 2>> = (0..4).map(|k| ([4 * k, 4 * k + 1], [4 * k + 2, 4 * k + 3])).collect();
             let faces: Vec<ElementPoints<1, 3>> = (0..4).map(|k| ([4 * k], [4 * k + 1, 4 * k + 2, 4 * k + 3])).collect();
             let least = |lanes: Plain| lanes.to_array().concat();
-            let (of_edges, of_faces) = (least(points.min_distances(&edges, share)), least(points.min_distances(&faces, share)));
+            let (of_edges, of_faces) = (least(pairs.min_distances(&edges, share)), least(pairs.min_distances(&faces, share)));
             for lane in 0..4 {
                 let nearest = [points.nearest(edges[lane], share), points.nearest(faces[lane], share)];
                 for (least, nearest) in [of_edges[lane], of_faces[lane]].into_iter().zip(nearest) {
@@ -229,7 +267,43 @@ mod tests {
                     prop_assert!(moves || nearest < 0.1 || least >= nearest - 2.0 * f32::EPSILON.sqrt());
                 }
                 // A pair has the same bits by itself.
-                prop_assert_eq!(least(points.min_distances(&faces[lane..=lane], share))[0], of_faces[lane]);
+                prop_assert_eq!(least(pairs.min_distances(&faces[lane..=lane], share))[0], of_faces[lane]);
+            }
+        }
+
+        #[test]
+        fn two_cloths_with_origins_of_their_own_are_as_far_apart_as_with_one_origin(
+            ends in proptest::collection::vec(proptest::array::uniform2(proptest::array::uniform4(-1.0..1.0f32)), 8),
+            shift in proptest::array::uniform3(-30.0..30.0f32),
+        ) {
+            let ends: Vec<_> = ends.into_iter().map(|ends| ends.map(|[x, y, z, radius]| [x, y, z, 0.1 * radius.abs()])).collect();
+            let common = SweptPoints { ends };
+            // Points below four are in the first cloth, whose origin is elsewhere.
+            let mut own = SweptPoints { ends: common.ends.clone() };
+            own.ends[..4].iter_mut().flatten().for_each(|end| (0..3).for_each(|axis| end[axis] -= shift[axis]));
+            let [x, y, z] = shift.map(f32::abs);
+            let rounding = (x + y + z) * ROUNDING;
+            let shift = OriginShift { metres: shift, rounding };
+            let of_point: Vec<u32> = (0..8).map(|point| point / 4).collect();
+            let shifted = ShiftedCloth { of_point: &of_point, cloth: 0, shift };
+            let [own, common] = [(&own, Some(shifted)), (&common, None)].map(|(points, shifted)| PairPoints { points, shifted });
+            let edges: [ElementPoints<2, 2>; 2] = [([0, 1], [4, 5]), ([6, 7], [2, 3])];
+            let faces: [ElementPoints<1, 3>; 2] = [([0], [5, 6, 7]), ([4], [1, 2, 3])];
+            let least = |pairs: &PairPoints<'_>| {
+                let of_faces: Plain = pairs.min_distances(&faces, 0.0);
+                let of_edges: Plain = pairs.min_distances(&edges, 0.0);
+                let both = [of_faces, of_edges].map(|lanes| lanes.to_array().concat());
+                [both[0][0], both[0][1], both[1][0], both[1][1]]
+            };
+            let points = common.points;
+            let nearest = [
+                points.nearest(faces[0], 0.0), points.nearest(faces[1], 0.0),
+                points.nearest(edges[0], 0.0), points.nearest(edges[1], 0.0),
+            ];
+            for ((own, common), nearest) in least(&own).into_iter().zip(least(&common)).zip(nearest) {
+                prop_assert!(own <= nearest + 1e-5);
+                // The direction of a short line is less exact.
+                prop_assert!(common < 0.1 || own > common - 3.0 * rounding - 1e-3, "{own} and {common}");
             }
         }
 
@@ -240,11 +314,12 @@ mod tests {
             enough in 0.0..0.2f32,
         ) {
             let ends = ends.into_iter().map(|ends| ends.map(|[x, y, z, radius]| [x, y, z, 0.1 * radius.abs()])).collect();
-            let points = SweptPoints { ends };
+            let points = &SweptPoints { ends };
+            let pairs = PairPoints { points, shifted: None };
             let edges: Vec<ElementPoints<2, 2>> = (0..4).map(|k| ([4 * k, 4 * k + 1], [4 * k + 2, 4 * k + 3])).collect();
             let faces: Vec<ElementPoints<1, 3>> = (0..3).map(|k| ([4 * k], [4 * k + 1, 4 * k + 2, 4 * k + 3])).collect();
-            let of_edges = points.separated_centroids::<Plain, 2, 2>(&edges, share, enough);
-            let of_faces = points.separated_centroids::<Plain, 1, 3>(&faces, share, enough);
+            let of_edges = pairs.separated_centroids::<Plain, 2, 2>(&edges, share, enough);
+            let of_faces = pairs.separated_centroids::<Plain, 1, 3>(&faces, share, enough);
             for lane in 0..4 {
                 if of_edges & (1 << lane) != 0 {
                     prop_assert!(points.nearest(edges[lane], share) >= enough - 1e-5);
@@ -253,7 +328,7 @@ mod tests {
                     prop_assert!(points.nearest(faces[lane], share) >= enough - 1e-5);
                 }
                 // A pair has the same bit by itself.
-                prop_assert_eq!(points.separated_centroids::<Plain, 2, 2>(&edges[lane..=lane], share, enough) & 1, of_edges >> lane & 1);
+                prop_assert_eq!(pairs.separated_centroids::<Plain, 2, 2>(&edges[lane..=lane], share, enough) & 1, of_edges >> lane & 1);
             }
         }
     }
