@@ -15,6 +15,7 @@
 
 use std::ops::ControlFlow;
 
+use crate::constraints::angular_momentum::{keep_angular_momentum, keeps_angular_momentum};
 use crate::constraints::damp::damp;
 use crate::constraints::link::glue::break_links;
 use crate::constraints::link::pass::{begin_links, form_links, relax_links};
@@ -290,6 +291,16 @@ fn apply_pass<R: CompiledReal>(
                 (now.direction, now.alternates),
                 &solver.pool,
             );
+        }
+        Pass::AngularMomentum => {
+            observer.enter(Stage::Constraints);
+            let Solver { model, state, contact, .. } = solver;
+            for (index, (cloth, settings)) in model.cloths.iter().zip(&frame.cloths).enumerate() {
+                let is_free = now.alternates[index] && !contact.can_touch(index);
+                if keeps_angular_momentum(cloth, settings, is_free) {
+                    keep_angular_momentum(cloth, state, schedule.h);
+                }
+            }
         }
         Pass::Whole(at) => {
             observer.enter(Stage::Constraints);

@@ -22,6 +22,7 @@
 //! | bending (Bergou et al. 2006) | hinges of four or six points | [`bend`], its rows in [`hinge`] |
 //! | tethers to pins | points | [`tether`] |
 //! | damping of relative velocities | links | [`damp`] |
+//! | angular momentum, which sweeps do not keep | points | [`angular_momentum`] |
 //! | signed rest angles, angle scale and dropoff, flip tracking | hinges | [`angle`] |
 //! | links and hinges that yield | links and hinges | [`plastic`] |
 //! | pressure (ideal gas law) | chambers | [`pressure`] |
@@ -36,6 +37,7 @@
 //! | rows side by side in lanes | all | [`side_by_side`] |
 
 pub mod angle;
+pub mod angular_momentum;
 pub mod attract;
 pub mod bend;
 pub mod damp;

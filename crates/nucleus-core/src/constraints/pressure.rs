@@ -63,6 +63,8 @@ pub struct PressureModel {
     holes: Vec<Hole>,
     /// By chamber: radius in metres of a sphere whose area is that of the chamber's faces at rest.
     radii: Vec<f64>,
+    /// By chamber: volume of the mesh in m³, with the caps of its holes.
+    volumes: Vec<f64>,
     /// First of the chambers in the state.
     pub first: usize,
 }
@@ -100,24 +102,36 @@ impl PressureModel {
         for (index, part) in (0..).zip(&parts) {
             part.iter().for_each(|&point| chamber[(place(point) - first) as usize] = index);
         }
+        // Relative to a point of the chamber, so that one far from the origin loses nothing.
+        let origins: Vec<_> = parts.iter().map(|part| surface.positions[part[0] as usize]).collect();
+        let (mut areas, mut volumes) = (vec![0.0; parts.len()], vec![0.0; parts.len()]);
         let holes = boundary_loops(surface).into_iter().map(|corners| {
-            let corners: Vec<u32> = corners.into_iter().map(place).collect();
-            Hole { chamber: chamber[(corners[0] - first) as usize], corners }
+            let own = chamber[(place(corners[0]) - first) as usize];
+            let from_origin = |&point: &u32| surface.positions[point as usize] - origins[own as usize];
+            volumes[own as usize] += cap_volume(&corners.iter().map(from_origin).collect::<Vec<_>>());
+            Hole { chamber: own, corners: corners.into_iter().map(place).collect() }
         });
         let holes = holes.collect();
-        let mut areas = vec![0.0; parts.len()];
         for [a, b, c] in surface.faces.triangles() {
             let [x, y, z] = [a, b, c].map(|point| surface.positions[point as usize]);
-            areas[chamber[(place(a) - first) as usize] as usize] += (y - x).cross(&(z - x)).norm() / 2.0;
+            let own = chamber[(place(a) - first) as usize] as usize;
+            areas[own] += (y - x).cross(&(z - x)).norm() / 2.0;
+            let [x, y, z] = [x, y, z].map(|corner| corner - origins[own]);
+            volumes[own] += x.dot(&y.cross(&z)) / 6.0;
         }
         let radii = areas.into_iter().map(|area| (area / (4.0 * std::f64::consts::PI)).sqrt()).collect();
         let triangles = triangles_by_block(surface, place, blocks);
-        Self { triangles, holes, radii, chamber, first: 0 }
+        Self { triangles, holes, radii, volumes, chamber, first: 0 }
     }
 
     /// Whether the cloth has any.
     pub fn is_on(&self) -> bool {
         !self.triangles.is_empty()
+    }
+
+    /// Whether its gas pushes from all sides, so that it has no torque.
+    pub fn is_closed(&self, pressure: &Pressure) -> bool {
+        self.holes.is_empty() || matches!(pressure, Pressure::Gas { sealed: true, .. })
     }
 
     /// How many chambers there are.
@@ -135,12 +149,12 @@ impl PressureModel {
         size_of_val(&self.chamber[..]) + size_of_val(&self.radii[..]) + self.rows() * size_of::<[u32; 3]>()
     }
 
-    /// The chambers as they are when nothing has moved yet.
+    /// The chambers as they are when nothing has moved yet. What they hold is measured by the mesh, wherever the points start.
     pub fn start<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
         self.find_areas(blocks, state, false, pool);
         for (index, sums) in self.sums(blocks, state, false).into_iter().enumerate() {
-            let volume = sums.volume / 3.0;
-            state.chambers[self.first + index] = Chamber { start_volume: volume, volume, amount: -1.0 };
+            let (start_volume, volume) = (self.volumes[index], sums.volume / 3.0);
+            state.chambers[self.first + index] = Chamber { start_volume, volume, amount: -1.0 };
         }
     }
 

@@ -50,7 +50,7 @@ use crate::model::order::Order;
 use crate::model::rows::RowList;
 use crate::model::strength_maps::{AirFactors, MapReader, StrengthMaps, weave_of};
 use crate::model::surface::Surface;
-use crate::model::topology::{Link, stretch_links};
+use crate::model::topology::{Link, rows_of_parts, stretch_links};
 use crate::model::vertex_maps::mean;
 use crate::model::weave::woven_links;
 
@@ -89,6 +89,8 @@ pub struct ClothModel<R> {
     pub attract: Vec<f64>,
     /// By block: the triangles with a point in it, for normals; empty where no air is felt.
     pub triangles: Vec<Vec<[u32; 3]>>,
+    /// The rows of its unconnected parts; empty where it is one part.
+    pub parts: Vec<Vec<u32>>,
     /// The elements of contact; empty where no contact is possible.
     pub boundary: BoundaryElements,
     /// Whether its sweeps alternate their direction: its links form odd rings (triangles, or quads with cross links),
@@ -146,6 +148,7 @@ impl<R: Real> ClothModel<R> {
             has_faces: !surface.faces.is_empty(),
             attract: cloth.vertex_maps.input_attract.clone(),
             triangles: Vec::new(),
+            parts: Vec::new(),
             boundary: BoundaryElements::default(),
             alternates_direction: cloth.lists.cross_links
                 || !cloth.warp.is_empty()
@@ -175,6 +178,7 @@ impl<R: Real> ClothModel<R> {
         };
         let mut strength_maps = StrengthMaps::default();
         if cloth.lists.stretch {
+            model.parts = rows_of_parts(surface, place);
             let mut rows = stretch_rows(surface, cloth, place);
             if !keeps_order {
                 rows.sort_unstable_by_key(|row| (row.ends[0].min(row.ends[1]), row.ends[0].max(row.ends[1])));

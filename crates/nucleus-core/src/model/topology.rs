@@ -194,6 +194,15 @@ pub fn components(surface: &Surface) -> Vec<Vec<u32>> {
     parts.into_values().collect()
 }
 
+/// The rows of the unconnected parts of a mesh; empty where the mesh is one part.
+pub fn rows_of_parts(surface: &Surface, place: impl Fn(u32) -> u32) -> Vec<Vec<u32>> {
+    let parts = components(surface);
+    match &parts[..] {
+        [whole] if whole.len() == surface.positions.len() => Vec::new(),
+        _ => parts.into_iter().map(|part| part.into_iter().map(&place).collect()).collect(),
+    }
+}
+
 /// A face cut into triangles, a fan round its first corner.
 pub fn fan_triangles(face: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])

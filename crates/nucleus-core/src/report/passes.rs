@@ -1,6 +1,7 @@
 //! The passes of a frame: how long their lists are, and how often each is swept. A pass that a scene does not use is
 //! absent.
 
+use crate::constraints::angular_momentum::keeps_angular_momentum;
 use crate::constraints::damp::Damping;
 use crate::constraints::link::pass::rows_of_pass;
 use crate::constraints::link::sweep::LinkSweep;
@@ -20,6 +21,7 @@ use crate::model::ClothModel;
 use crate::output::PassCost;
 use crate::particles::population::Population;
 use crate::particles::slowing::kept_share;
+use crate::schedule::sweep_direction::alternating_cloths;
 use crate::schedule::{Effect, Pass, Schedule, WholeEffect};
 use crate::solver::Solver;
 
@@ -40,6 +42,16 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     for name in ["stretch", "compress", "shear", "bend"] {
         passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
+    let is_free = alternating_cloths(&solver.contact, &solver.links, frame);
+    let is_free = |cloth: usize| is_free[cloth] && !solver.contact.can_touch(cloth);
+    let is_kept = |cloth: &usize| {
+        keeps_angular_momentum(&solver.model.cloths[*cloth], &frame.cloths[*cloth], is_free(*cloth))
+    };
+    let kept = (0..frame.cloths.len()).filter(is_kept).map(|cloth| solver.model.cloths[cloth].points().len());
+    let kept = kept.sum();
+    let is_physical = matches!(frame.resistance, ResistanceModel::Physical { .. });
+    let per_step = if is_physical { f64::from(steps) } else { 0.0 };
+    passes.push(PassCost { name: "angular momentum", rows: kept, sweeps: per_step });
     let tethered = schedule.passes.iter().filter_map(|pass| match pass {
         Pass::Tethers(cloth) => Some(*cloth).zip(solver.tethers.get(*cloth)),
         _ => None,
@@ -88,9 +100,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         + solver.contact.material_maps.len();
     let weave = |cloth: &ClothModel<R>| cloth.strength_maps.woven();
     let woven = solver.model.cloths.iter().map(weave).sum();
-    let is_physical = matches!(frame.resistance, ResistanceModel::Physical { .. });
-    let sweeps = if is_physical { f64::from(steps) } else { 0.0 };
-    passes.push(PassCost { name: "weave", rows: woven, sweeps });
+    passes.push(PassCost { name: "weave", rows: woven, sweeps: per_step });
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
     passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
     passes

@@ -54,7 +54,7 @@ pub fn physical<R: Real>(
             wholes.push(WholeSweep { cloth, effect: WholeEffect::Attract(None) });
         }
     }
-    let mut passes = vec![Pass::Constraints(0..sweeps.len())];
+    let mut passes = vec![Pass::Constraints(0..sweeps.len()), Pass::AngularMomentum];
     passes.extend((0..wholes.len()).map(Pass::Whole));
     passes.extend([Pass::ClothContact, Pass::ColliderContact]);
     passes

@@ -189,7 +189,7 @@ mod tests {
     }
 
     /// The passes of a step as letters: stretch (s), compress (c), shear (h), bend (b), collider contact (C), cloth
-    /// contact (M), safeguard (S).
+    /// contact (M), angular momentum (J), safeguard (S).
     fn letters(schedule: &Schedule<f64>) -> String {
         let letter = |sweep: &Sweep<f64>| match sweep.effect {
             Effect::Stretch(strength, _) if strength.share.above == 0.0 => 'c',
@@ -204,6 +204,7 @@ mod tests {
                 WholeEffect::Shape(_) => "R",
                 WholeEffect::Attract(_) => "A",
             }),
+            Pass::AngularMomentum => String::from("J"),
             Pass::Links(_) => String::from("L"),
             Pass::Liquid(_) => String::from("Q"),
             Pass::Tethers(_) => String::from("T"),

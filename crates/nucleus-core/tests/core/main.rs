@@ -2,6 +2,7 @@
 
 mod air_and_fields;
 mod analytic;
+mod angular_momentum;
 mod checkpoint;
 mod classic;
 mod collision;

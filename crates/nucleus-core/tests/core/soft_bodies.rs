@@ -16,7 +16,7 @@ const PHYSICAL: ResistanceModel = ResistanceModel::Physical { evaluations: 96.0 
 const LINKS: ClothLists = ClothLists { stretch: true, damp: true, ..ClothLists::NONE };
 
 /// A sphere of 642 points that begins as an icosahedron and is divided three times.
-fn icosphere(radius: f64) -> Surface {
+pub fn icosphere(radius: f64) -> Surface {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut positions: Vec<Vec3> = Vec::new();
     for [a, b] in [[-1.0, golden], [1.0, golden], [-1.0, -golden], [1.0, -golden]] {
@@ -63,7 +63,7 @@ fn icosphere(radius: f64) -> Surface {
 }
 
 /// A box of quads, `n` cells along each side.
-fn crate_of(size: f64, n: u32) -> Surface {
+pub fn crate_of(size: f64, n: u32) -> Surface {
     let mut index = std::collections::BTreeMap::new();
     let (mut positions, mut faces) = (Vec::new(), Faces::default());
     let mut point = |k: [u32; 3]| {
