@@ -299,6 +299,9 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     }
 }
 
+/// Lowest and highest corner of a bounding box.
+pub type Extent = [[f32; 3]; 2];
+
 /// Lowest and highest corner of the bounding box of points.
 pub(crate) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let begin = points.first().copied().unwrap_or_default();

@@ -4,9 +4,8 @@ use std::io::{Read, Seek};
 
 use nucleus_cache::CameraView;
 
-use crate::clip::Clip;
+use crate::clip::{Clip, Extent};
 
-use super::Extent;
 use super::stage::{Attribute, Prim, Stage, Value};
 
 const MILLIMETRES: f32 = 25.4;

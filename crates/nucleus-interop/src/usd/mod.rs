@@ -7,7 +7,7 @@ use std::path::Path;
 
 use nucleus_cache::{ObjectInfo, ObjectKind};
 
-use crate::clip::{Clip, extent};
+use crate::clip::{Clip, Extent, extent};
 use crate::error::ExportError;
 use crate::materials;
 use crate::normals::normals;
@@ -28,9 +28,6 @@ mod text;
 /// The scope of the materials beside the objects, and its path.
 const SCOPE: &str = "materials";
 const MATERIALS: &str = "/run/materials";
-
-/// Lowest and highest corner of a bounding box.
-type Extent = [[f32; 3]; 2];
 
 /// Writes one scene as text.
 pub(crate) fn write_text<R: Read + Seek>(

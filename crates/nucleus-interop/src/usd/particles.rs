@@ -4,11 +4,10 @@ use std::io::{Read, Seek};
 
 use nucleus_core::ParticleLook;
 
-use crate::clip::{Clip, extent};
+use crate::clip::{Clip, Extent, extent};
 use crate::error::ExportError;
 use crate::materials;
 
-use super::Extent;
 use super::stage::{Attribute, Stage, Value};
 
 /// A particle that looks like its object.
