@@ -294,10 +294,9 @@ fn apply_pass<R: CompiledReal>(
         }
         Pass::AngularMomentum => {
             observer.enter(Stage::Constraints);
-            let Solver { model, state, contact, .. } = solver;
-            for (index, (cloth, settings)) in model.cloths.iter().zip(&frame.cloths).enumerate() {
-                let is_free = now.alternates[index] && !contact.can_touch(index);
-                if keeps_angular_momentum(cloth, settings, is_free) {
+            let Solver { model, state, .. } = solver;
+            for (index, cloth) in model.cloths.iter().enumerate() {
+                if keeps_angular_momentum(cloth, frame, index, now.alternates[index]) {
                     keep_angular_momentum(cloth, state, schedule.h);
                 }
             }

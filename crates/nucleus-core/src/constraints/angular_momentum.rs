@@ -10,7 +10,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::input::frame::{ClothFrame, Pressure};
+use crate::input::frame::{FrameInput, Pressure};
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::state::State;
@@ -18,16 +18,30 @@ use crate::state::State;
 /// Share of the moment of inertia that is added about every axis: points in one line have none about it.
 const LEAST_INERTIA: f64 = 1e-9;
 
-/// Whether the sweeps of a cloth are to have no torque in a frame: where it moves freely and can touch nothing (`is_free`), or is
+/// Whether the sweeps of a cloth are to have no torque in a frame: where it moves freely (`is_free`) and can touch nothing, or is
 /// under pressure in closed chambers, whatever it touches. The gas that an open chamber loses takes momentum with it. Without
 /// pressure the torque is small, and cloth that lies on the ground would creep by the rounding of what takes it away.
-pub fn keeps_angular_momentum<R: Real>(cloth: &ClothModel<R>, settings: &ClothFrame, is_free: bool) -> bool {
+pub fn keeps_angular_momentum<R: Real>(
+    cloth: &ClothModel<R>,
+    frame: &FrameInput,
+    index: usize,
+    is_free: bool,
+) -> bool {
     let is_swept = cloth.stretch.len() > 0;
     is_swept
-        && match &settings.pressure {
-            Pressure::Off => is_free,
+        && match &frame.cloths[index].pressure {
+            Pressure::Off => is_free && !can_touch(frame, index),
             pressure => cloth.pressure.is_closed(pressure),
         }
+}
+
+/// Whether a cloth collides with anything, near or far.
+fn can_touch(frame: &FrameInput, index: usize) -> bool {
+    let cloth = &frame.cloths[index];
+    let has_others = frame.plane.is_some()
+        || frame.cloths.len() > 1
+        || frame.colliders.iter().any(|collider| collider.collide);
+    cloth.self_collision.on || cloth.collide && has_others
 }
 
 /// Takes the torque of the sweeps of a time step of `h` seconds, and of the pressure before them, from a cloth that is not

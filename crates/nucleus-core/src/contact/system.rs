@@ -172,12 +172,6 @@ impl<R: Real> ContactSystem<R> {
         self.touches.iter_mut().zip(in_frame).for_each(|(touches, in_frame)| *touches = in_frame);
     }
 
-    /// Whether a cloth collides with anything in this frame, near or far.
-    pub fn can_touch(&self, cloth: usize) -> bool {
-        let touches_cloth = self.cloth_contacts.as_ref().is_some_and(|contacts| contacts.touches(cloth));
-        touches_cloth || self.has_collider_material(cloth) || self.ground_materials[cloth].is_some()
-    }
-
     /// Whether a pass resolves the contacts of a cloth.
     pub fn is_resolved(&self, cloth: usize) -> bool {
         self.contact_mask.get(cloth).is_none_or(|&is_resolved| is_resolved)

@@ -43,12 +43,9 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
     let is_free = alternating_cloths(&solver.contact, &solver.links, frame);
-    let is_free = |cloth: usize| is_free[cloth] && !solver.contact.can_touch(cloth);
-    let is_kept = |cloth: &usize| {
-        keeps_angular_momentum(&solver.model.cloths[*cloth], &frame.cloths[*cloth], is_free(*cloth))
-    };
-    let kept = (0..frame.cloths.len()).filter(is_kept).map(|cloth| solver.model.cloths[cloth].points().len());
-    let kept = kept.sum();
+    let cloths = solver.model.cloths.iter().enumerate();
+    let kept = cloths.filter(|(index, cloth)| keeps_angular_momentum(cloth, frame, *index, is_free[*index]));
+    let kept = kept.map(|(_, cloth)| cloth.points().len()).sum();
     let is_physical = matches!(frame.resistance, ResistanceModel::Physical { .. });
     let per_step = if is_physical { f64::from(steps) } else { 0.0 };
     passes.push(PassCost { name: "angular momentum", rows: kept, sweeps: per_step });
