@@ -292,13 +292,11 @@ fn apply_pass<R: CompiledReal>(
                 &solver.pool,
             );
         }
-        Pass::AngularMomentum => {
+        Pass::AngularMomentum(cloth) => {
             observer.enter(Stage::Constraints);
-            let Solver { model, state, .. } = solver;
-            for (index, cloth) in model.cloths.iter().enumerate() {
-                if keeps_angular_momentum(cloth, frame, index, now.alternates[index]) {
-                    keep_angular_momentum(cloth, state, schedule.h);
-                }
+            let (own, settings) = (&solver.model.cloths[*cloth], &frame.cloths[*cloth]);
+            if keeps_angular_momentum(own, &settings.pressure, now.alternates[*cloth]) {
+                keep_angular_momentum(own, &mut solver.state, schedule.h);
             }
         }
         Pass::Whole(at) => {

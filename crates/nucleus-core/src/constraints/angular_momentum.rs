@@ -18,21 +18,20 @@ use crate::state::State;
 /// Share of the moment of inertia that is added about every axis: points in one line have none about it.
 const LEAST_INERTIA: f64 = 1e-9;
 
-/// Whether the sweeps of a cloth are to have no torque in a frame: where it moves freely (`is_free`) and can touch nothing, or is
-/// under pressure in closed chambers, whatever it touches. The gas that an open chamber loses takes momentum with it. Without
-/// pressure the torque is small, and cloth that lies on the ground would creep by the rounding of what takes it away.
-pub fn keeps_angular_momentum<R: Real>(
-    cloth: &ClothModel<R>,
-    frame: &FrameInput,
-    index: usize,
-    is_free: bool,
-) -> bool {
-    let is_swept = cloth.stretch.len() > 0;
-    is_swept
-        && match &frame.cloths[index].pressure {
-            Pressure::Off => is_free && !can_touch(frame, index),
-            pressure => cloth.pressure.is_closed(pressure),
-        }
+/// Whether the sweeps of a cloth may have to lose their torque in a frame: where it can touch nothing, or is under pressure,
+/// whatever it touches. Without pressure the torque is small, and cloth that lies on the ground would creep by the rounding of
+/// what takes it away.
+pub fn may_keep_angular_momentum(frame: &FrameInput, cloth: usize) -> bool {
+    frame.cloths[cloth].pressure != Pressure::Off || !can_touch(frame, cloth)
+}
+
+/// Whether they do: where the cloth moves freely (`is_free`), or its pressure is that of closed chambers. The gas that an open
+/// chamber loses takes momentum with it.
+pub fn keeps_angular_momentum<R: Real>(cloth: &ClothModel<R>, pressure: &Pressure, is_free: bool) -> bool {
+    match pressure {
+        Pressure::Off => is_free,
+        pressure => cloth.pressure.is_closed(pressure),
+    }
 }
 
 /// Whether a cloth collides with anything, near or far.

@@ -43,12 +43,14 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
     let is_free = alternating_cloths(&solver.contact, &solver.links, frame);
-    let cloths = solver.model.cloths.iter().enumerate();
-    let kept = cloths.filter(|(index, cloth)| keeps_angular_momentum(cloth, frame, *index, is_free[*index]));
-    let kept = kept.map(|(_, cloth)| cloth.points().len()).sum();
-    let is_physical = matches!(frame.resistance, ResistanceModel::Physical { .. });
-    let per_step = if is_physical { f64::from(steps) } else { 0.0 };
-    passes.push(PassCost { name: "angular momentum", rows: kept, sweeps: per_step });
+    let kept = schedule.passes.iter().filter_map(|pass| match pass {
+        Pass::AngularMomentum(cloth) => Some(*cloth),
+        _ => None,
+    });
+    let cloth = |index: usize| &solver.model.cloths[index];
+    let kept = kept.filter(|&at| keeps_angular_momentum(cloth(at), &frame.cloths[at].pressure, is_free[at]));
+    let kept = kept.map(|at| cloth(at).points().len()).sum();
+    passes.push(PassCost { name: "angular momentum", rows: kept, sweeps: f64::from(steps) });
     let tethered = schedule.passes.iter().filter_map(|pass| match pass {
         Pass::Tethers(cloth) => Some(*cloth).zip(solver.tethers.get(*cloth)),
         _ => None,
@@ -97,7 +99,9 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         + solver.contact.material_maps.len();
     let weave = |cloth: &ClothModel<R>| cloth.strength_maps.woven();
     let woven = solver.model.cloths.iter().map(weave).sum();
-    passes.push(PassCost { name: "weave", rows: woven, sweeps: per_step });
+    let is_physical = matches!(frame.resistance, ResistanceModel::Physical { .. });
+    let sweeps = if is_physical { f64::from(steps) } else { 0.0 };
+    passes.push(PassCost { name: "weave", rows: woven, sweeps });
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
     passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
     passes

@@ -51,8 +51,8 @@ pub enum WholeEffect {
 pub enum Pass {
     /// A run of [`Schedule::sweeps`], swept together.
     Constraints(std::ops::Range<usize>),
-    /// Takes from each free cloth the torque that its sweeps had.
-    AngularMomentum,
+    /// Takes from a cloth, by its index, the torque that its sweeps had.
+    AngularMomentum(usize),
     /// An effect on a whole cloth, of [`Schedule::wholes`].
     Whole(usize),
     /// The tethers of a cloth, by its index.

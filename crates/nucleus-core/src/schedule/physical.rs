@@ -1,6 +1,7 @@
 //! Physical: resistances are stiffnesses, and a time step has one sweep of every effect (Macklin et al. 2019).
 
 use crate::constraints::angle::AngleStrength;
+use crate::constraints::angular_momentum::may_keep_angular_momentum;
 use crate::constraints::bend::BendStrength;
 use crate::constraints::shape::{DEFORM_RATE, RIGID_RATE, ShapeStrength};
 use crate::constraints::strength_map::Sides;
@@ -54,7 +55,10 @@ pub fn physical<R: Real>(
             wholes.push(WholeSweep { cloth, effect: WholeEffect::Attract(None) });
         }
     }
-    let mut passes = vec![Pass::Constraints(0..sweeps.len()), Pass::AngularMomentum];
+    let mut passes = vec![Pass::Constraints(0..sweeps.len())];
+    let is_swept = |cloth: &usize| sweeps.iter().any(|sweep| sweep.cloth == *cloth);
+    let cloths = (0..frame.cloths.len()).filter(|&cloth| may_keep_angular_momentum(frame, cloth));
+    passes.extend(cloths.filter(is_swept).map(Pass::AngularMomentum));
     passes.extend((0..wholes.len()).map(Pass::Whole));
     passes.extend([Pass::ClothContact, Pass::ColliderContact]);
     passes

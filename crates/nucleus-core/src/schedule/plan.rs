@@ -204,7 +204,7 @@ mod tests {
                 WholeEffect::Shape(_) => "R",
                 WholeEffect::Attract(_) => "A",
             }),
-            Pass::AngularMomentum => String::from("J"),
+            Pass::AngularMomentum(_) => String::from("J"),
             Pass::Links(_) => String::from("L"),
             Pass::Liquid(_) => String::from("Q"),
             Pass::Tethers(_) => String::from("T"),
