@@ -28,10 +28,12 @@ pub fn may_keep_angular_momentum(frame: &FrameInput, cloth: usize) -> bool {
 /// Whether they do: where the cloth moves freely (`is_free`), or its pressure is that of closed chambers. The gas that an open
 /// chamber loses takes momentum with it.
 pub fn keeps_angular_momentum<R: Real>(cloth: &ClothModel<R>, pressure: &Pressure, is_free: bool) -> bool {
-    match pressure {
-        Pressure::Off => is_free,
-        pressure => cloth.pressure.is_closed(pressure),
-    }
+    let has_links = cloth.stretch.len() > 0; // particles have none
+    has_links
+        && match pressure {
+            Pressure::Off => is_free,
+            pressure => cloth.pressure.is_closed(pressure),
+        }
 }
 
 /// Whether a cloth collides with anything, near or far.
