@@ -59,8 +59,8 @@ fn inflated() -> FrameInput {
 }
 
 #[test]
-fn a_cushion_under_pressure_does_not_begin_to_spin() {
-    let surface = cushion();
+fn a_ball_under_pressure_does_not_begin_to_spin() {
+    let surface = icosphere(0.1);
     let count = surface.positions.len();
     let mut solver = built(surface, Vec::new());
     (0..72).for_each(|_| _ = solver.step(&inflated(), &mut ()));
@@ -102,7 +102,7 @@ fn a_ball_under_pressure_does_not_roll_away_on_level_ground() {
     let before = centre(&solver);
     (0..72).for_each(|_| _ = solver.step(&input, &mut ()));
     let way = centre(&solver) - before;
-    assert!(way.norm() < 0.1, "{way} m in three seconds"); // 10.9 with the torque
+    assert!(way.norm() < 0.1, "{way} m in three seconds"); // 12 with the torque
 }
 
 #[test]
