@@ -79,11 +79,12 @@ fn turn_back<R: Real>(rows: impl Iterator<Item = u32> + Clone, state: &mut State
 struct Moments {
     /// In kg.
     mass: f64,
-    /// Σ m x, in kg m.
+    /// Σ m x and Σ m s, in kg m: now, and at the start of the time step.
     sum: Vector3<f64>,
-    /// Σ m x xᵀ, in kg m².
+    start_sum: Vector3<f64>,
+    /// Σ m x sᵀ, in kg m².
     square: Matrix3<f64>,
-    /// Σ m (x - p) and Σ m s × (x - p), with the positions p before the sweeps and s at the start of the time step.
+    /// Σ m (x - p) and Σ m s × (x - p), with the positions p before the sweeps.
     push: Vector3<f64>,
     torque: Vector3<f64>,
 }
@@ -97,7 +98,8 @@ impl Moments {
         h: f64,
     ) -> Option<Self> {
         let zero = Vector3::zeros();
-        let mut all = Self { mass: 0.0, sum: zero, square: Matrix3::zeros(), push: zero, torque: zero };
+        let square = Matrix3::zeros();
+        let mut all = Self { mass: 0.0, sum: zero, start_sum: zero, square, push: zero, torque: zero };
         for row in rows.map(|row| row as usize) {
             let moved = state.displacement[row];
             let inverse_mass = moved.0[3].to_f64();
@@ -112,17 +114,19 @@ impl Moments {
             let (place, push) = (anchor + now, (now - predicted) * mass);
             all.mass += mass;
             all.sum += place * mass;
-            all.square += place * place.transpose() * mass;
+            all.start_sum += start * mass;
+            all.square += place * start.transpose() * mass;
             all.push += push;
             all.torque += start.cross(&push);
         }
         Some(all)
     }
 
-    /// The angle, in radians about each axis, by which the sweeps have turned the cloth as a whole.
+    /// The angle a, in radians about each axis, by which the sweeps have turned the cloth as a whole: the turn a × (x - c)
+    /// about the centre c has the torque Σ m s × (a × (x - c)).
     fn angle(&self) -> Option<Vector3<f64>> {
         let centre = self.sum / self.mass;
-        let square = self.square - centre * self.sum.transpose();
+        let square = self.square - centre * self.start_sum.transpose();
         let size = square.trace() * (1.0 + LEAST_INERTIA);
         let torque = self.torque - centre.cross(&self.push);
         let inertia = Matrix3::identity() * size - square;

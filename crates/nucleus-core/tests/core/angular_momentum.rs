@@ -65,7 +65,7 @@ fn a_ball_under_pressure_does_not_begin_to_spin() {
     let mut solver = built(surface, Vec::new());
     (0..72).for_each(|_| _ = solver.step(&inflated(), &mut ()));
     let [_, turn] = spin(&motion(&solver, 0..count));
-    assert!(turn.norm() < 0.01, "{turn} rad/s");
+    assert!(turn.norm() < 1e-3, "{turn} rad/s"); // 45 with the torque
 }
 
 #[test]
