@@ -382,8 +382,7 @@ checkpoint_struct!([R: Real] State<R> {
     parts: [populations],
     rebuilt: [
         start, depenetration_by_collider, depenetration_by_cloth, displaced, step_length, predicted, normal, corrections, area, added_wind,
-        field,
-        inverse_mass
+        field, spins, inverse_mass
     ],
 });
 

@@ -7,11 +7,14 @@
 //!
 //! After the sweeps of a time step the cloth is turned about its centre of mass, by the small angle that takes the torque
 //! away. Distances within the cloth stay as they are.
+//!
+//! `damp` has a torque too, because it acts across links as well as along them: a cushion that is blown up would turn, and
+//! a spinning sheet would stop in empty space. The velocities are turned in the same way.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::input::frame::{FrameInput, Pressure};
-use crate::math::Real;
+use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::state::State;
 
@@ -55,16 +58,17 @@ pub fn keep_angular_momentum<R: Real>(cloth: &ClothModel<R>, state: &mut State<R
 }
 
 fn turn_back<R: Real>(rows: impl Iterator<Item = u32> + Clone, state: &mut State<R>, h: f64) {
-    let Some(first) = rows.clone().next() else { return };
-    let origin = Vector3::from(state.anchor[first as usize]);
-    let Some(moments) = Moments::of(rows.clone(), state, origin, h) else { return };
-    let centre = moments.sum / moments.mass;
-    let Some(angle) = moments.angle() else { return };
+    let lever_and_push = |state: &State<R>, row: usize, origin: Vector3<f64>| {
+        let [now, predicted, velocity] =
+            [state.displacement[row], state.predicted[row], state.velocity[row]].map(vector);
+        let start = Vector3::from(state.anchor[row]) - origin + predicted - velocity * h;
+        [start, now - predicted]
+    };
+    let Some(moments) = Moments::of(rows.clone(), state, lever_and_push) else { return };
+    let Some(angle) = moments.turn(moments.torque()) else { return };
     for row in rows.map(|row| row as usize) {
+        let back = angle.cross(&moments.from_centre(state, row));
         let moved = &mut state.displacement[row];
-        let anchor = Vector3::from(state.anchor[row]) - origin;
-        let from_centre = anchor + Vector3::from(moved.xyz().map(R::to_f64)) - centre;
-        let back = angle.cross(&from_centre);
         for axis in 0..3 {
             let before = moved.0[axis];
             moved.0[axis] = before - R::from_f64(back[axis]);
@@ -75,64 +79,120 @@ fn turn_back<R: Real>(rows: impl Iterator<Item = u32> + Clone, state: &mut State
     }
 }
 
-/// Moments of a cloth, relative to an origin.
+/// Calls `work`, which changes the velocities of a cloth by what acts within it, and gives each part that is not pinned the
+/// angular momentum that it had before.
+pub fn without_torque<R: Real>(
+    cloth: &ClothModel<R>,
+    state: &mut State<R>,
+    work: impl FnOnce(&mut State<R>),
+) {
+    let mut spins = std::mem::take(&mut state.spins);
+    spins.clear();
+    let mut remember = |moments: Option<Moments>| spins.push(moments.map(|moments| moments.torque()));
+    if cloth.parts.is_empty() {
+        remember(Moments::of_velocities(cloth.points(), state));
+    }
+    cloth.parts.iter().for_each(|part| remember(Moments::of_velocities(part.iter().copied(), state)));
+    work(state);
+    if cloth.parts.is_empty() {
+        spin_as_before(cloth.points(), state, spins[0]);
+    }
+    let parts = cloth.parts.iter().zip(&spins);
+    parts.for_each(|(part, &spin)| spin_as_before(part.iter().copied(), state, spin));
+    state.spins = spins;
+}
+
+fn spin_as_before<R: Real>(
+    rows: impl Iterator<Item = u32> + Clone,
+    state: &mut State<R>,
+    before: Option<Vector3<f64>>,
+) {
+    let (Some(before), Some(moments)) = (before, Moments::of_velocities(rows.clone(), state)) else { return };
+    let Some(turn) = moments.turn(before - moments.torque()) else { return };
+    for row in rows.map(|row| row as usize) {
+        let added = turn.cross(&moments.from_centre(state, row));
+        (0..3).for_each(|axis| state.velocity[row].0[axis] += R::from_f64(added[axis]));
+    }
+}
+
+/// Moments of a cloth, relative to an origin. A point at x has a lever s and a push p.
 struct Moments {
+    origin: Vector3<f64>,
     /// In kg.
     mass: f64,
-    /// Σ m x and Σ m s, in kg m: now, and at the start of the time step.
+    /// Σ m x and Σ m s, in kg m.
     sum: Vector3<f64>,
-    start_sum: Vector3<f64>,
+    lever_sum: Vector3<f64>,
     /// Σ m x sᵀ, in kg m².
     square: Matrix3<f64>,
-    /// Σ m (x - p) and Σ m s × (x - p), with the positions p before the sweeps.
+    /// Σ m p and Σ m s × p.
     push: Vector3<f64>,
     torque: Vector3<f64>,
 }
 
 impl Moments {
-    /// Those of some rows; `None` where one is pinned, which takes any torque.
+    /// Those of some rows, given the lever, relative to an origin, and the push of each; `None` where one is pinned, which
+    /// takes any torque.
     fn of<R: Real>(
-        rows: impl Iterator<Item = u32>,
+        mut rows: impl Iterator<Item = u32> + Clone,
         state: &State<R>,
-        origin: Vector3<f64>,
-        h: f64,
+        lever_and_push: impl Fn(&State<R>, usize, Vector3<f64>) -> [Vector3<f64>; 2],
     ) -> Option<Self> {
-        let zero = Vector3::zeros();
-        let square = Matrix3::zeros();
-        let mut all = Self { mass: 0.0, sum: zero, start_sum: zero, square, push: zero, torque: zero };
-        for row in rows.map(|row| row as usize) {
-            let moved = state.displacement[row];
-            let inverse_mass = moved.0[3].to_f64();
-            if inverse_mass <= 0.0 {
-                return None;
-            }
+        let (zero, square) = (Vector3::zeros(), Matrix3::zeros());
+        let origin = Vector3::from(state.anchor[rows.clone().next()? as usize]);
+        let mut all =
+            Self { origin, mass: 0.0, sum: zero, lever_sum: zero, square, push: zero, torque: zero };
+        let is_free = rows.all(|row| {
+            let row = row as usize;
+            let inverse_mass = state.displacement[row].0[3].to_f64();
             let mass = 1.0 / inverse_mass;
-            let anchor = Vector3::from(state.anchor[row]) - origin;
-            let of = |row: [R; 3]| Vector3::from(row.map(R::to_f64));
-            let (now, predicted) = (of(moved.xyz()), of(state.predicted[row].xyz()));
-            let start = anchor + predicted - of(state.velocity[row].xyz()) * h;
-            let (place, push) = (anchor + now, (now - predicted) * mass);
+            let place = all.place(state, row);
+            let [lever, push] = lever_and_push(state, row, origin);
             all.mass += mass;
             all.sum += place * mass;
-            all.start_sum += start * mass;
-            all.square += place * start.transpose() * mass;
-            all.push += push;
-            all.torque += start.cross(&push);
-        }
-        Some(all)
+            all.lever_sum += lever * mass;
+            all.square += place * lever.transpose() * mass;
+            all.push += push * mass;
+            all.torque += lever.cross(&push) * mass;
+            inverse_mass > 0.0
+        });
+        is_free.then_some(all)
     }
 
-    /// The angle a, in radians about each axis, by which the sweeps have turned the cloth as a whole: the turn a × (x - c)
-    /// about the centre c has the torque Σ m s × (a × (x - c)).
-    fn angle(&self) -> Option<Vector3<f64>> {
-        let centre = self.sum / self.mass;
-        let square = self.square - centre * self.start_sum.transpose();
-        let size = square.trace() * (1.0 + LEAST_INERTIA);
-        let torque = self.torque - centre.cross(&self.push);
-        let inertia = Matrix3::identity() * size - square;
-        inertia
-            .try_inverse()
-            .map(|inverse| inverse * torque)
-            .filter(|angle| angle.iter().all(|x| x.is_finite()))
+    /// The lever of a point is its position, and the push its velocity.
+    fn of_velocities<R: Real>(rows: impl Iterator<Item = u32> + Clone, state: &State<R>) -> Option<Self> {
+        Self::of(rows, state, |state, row, origin| {
+            let place = Vector3::from(state.anchor[row]) - origin + vector(state.displacement[row]);
+            [place, vector(state.velocity[row])]
+        })
     }
+
+    /// The position of a row, relative to the origin.
+    fn place<R: Real>(&self, state: &State<R>, row: usize) -> Vector3<f64> {
+        Vector3::from(state.anchor[row]) - self.origin + vector(state.displacement[row])
+    }
+
+    /// The position of a row, relative to the centre of mass.
+    fn from_centre<R: Real>(&self, state: &State<R>, row: usize) -> Vector3<f64> {
+        self.place(state, row) - self.sum / self.mass
+    }
+
+    /// Σ m s × p about the centre of mass.
+    fn torque(&self) -> Vector3<f64> {
+        self.torque - (self.sum / self.mass).cross(&self.push)
+    }
+
+    /// The turn a about each axis whose push a × (x - c), with the centre of mass c, has this torque.
+    fn turn(&self, torque: Vector3<f64>) -> Option<Vector3<f64>> {
+        let centre = self.sum / self.mass;
+        let square = self.square - centre * self.lever_sum.transpose();
+        let size = square.trace() * (1.0 + LEAST_INERTIA);
+        let inertia = Matrix3::identity() * size - square;
+        let turn = inertia.try_inverse().map(|inverse| inverse * torque);
+        turn.filter(|turn| turn.iter().all(|x| x.is_finite()))
+    }
+}
+
+fn vector<R: Real>(row: Row4<R>) -> Vector3<f64> {
+    Vector3::from(row.xyz().map(R::to_f64))
 }

@@ -1,7 +1,7 @@
 //! Damping of the relative velocity of linked points, once per substep.
 //!
-//! `stretchDamp` acts along the links only, `damp` in all directions. Both act on pairs of points, equal and opposite,
-//! so they conserve momentum: a cloth that moves as a rigid body is not slowed.
+//! `stretchDamp` acts along the links only, `damp` in all directions. Both act on pairs of points, equal and opposite, so
+//! they conserve momentum; the torque of `damp` is taken away. A cloth that moves as a rigid body is not slowed.
 
 use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::math::{Real, Row4, dot};
@@ -10,6 +10,7 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
+use super::angular_momentum::without_torque;
 use super::row_loops::for_all_rows;
 use super::strength_map::StrengthGroup;
 use super::stretch::LinkGroup;
@@ -22,22 +23,29 @@ pub fn damp<R: Real>(
     substep: f64,
     pool: &ThreadPool,
 ) {
-    let State { displacement, velocity, .. } = state;
-    let velocity = DisjointSlice::new(velocity);
     for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
         let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
         if !damping.is_felt() {
             continue;
         }
-        for_all_rows(pool, &cloth.blocks, &cloth.stretch, |batch| {
-            let (links, factors) = (cloth.stretch.batch(batch), cloth.strength_maps.damp.batch(batch));
-            // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
-            #[allow(unsafe_code)]
-            unsafe {
-                relax(velocity, displacement, links, factors, &damping);
-            }
-        });
+        match damping.damp > 0.0 {
+            true => without_torque(cloth, state, |state| sweep(cloth, state, &damping, pool)),
+            false => sweep(cloth, state, &damping, pool),
+        }
     }
+}
+
+fn sweep<R: Real>(cloth: &ClothModel<R>, state: &mut State<R>, damping: &Damping, pool: &ThreadPool) {
+    let State { displacement, velocity, .. } = state;
+    let velocity = DisjointSlice::new(velocity);
+    for_all_rows(pool, &cloth.blocks, &cloth.stretch, |batch| {
+        let (links, factors) = (cloth.stretch.batch(batch), cloth.strength_maps.damp.batch(batch));
+        // SAFETY: interior rows of two blocks, and interface rows of one colour, share no point.
+        #[allow(unsafe_code)]
+        unsafe {
+            relax(velocity, displacement, links, factors, damping);
+        }
+    });
 }
 
 /// The damping of a cloth in a substep.

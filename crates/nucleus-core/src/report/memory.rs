@@ -35,6 +35,7 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         wind_travel: _,
         chambers,
         rotations,
+        spins,
         inverse_mass,
         populations,
     } = state;
@@ -52,10 +53,12 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
     ];
     let rows: usize = rows.into_iter().map(|column| size_of_val(&column[..])).sum();
     let chambers = size_of_val(&chambers[..]) + size_of_val(&rotations[..]) + size_of_val(&displaced[..]);
+    let spins = size_of_val(&spins[..]);
     let populations: usize = populations.iter().map(Population::bytes).sum();
     rows + size_of_val(&anchor[..])
         + size_of_val(&normal[..])
         + chambers
+        + spins
         + size_of_val(&inverse_mass[..])
         + populations
 }

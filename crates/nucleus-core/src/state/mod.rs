@@ -10,6 +10,8 @@ pub mod start;
 
 use std::ops::Range;
 
+use nalgebra::Vector3;
+
 use crate::bytes::{HASH_SEED, hash_word};
 use crate::math::{Real, Row4, sub};
 use crate::particles::population::Population;
@@ -58,6 +60,8 @@ pub struct State<R> {
     pub chambers: Vec<Chamber>,
     /// The rotation of each shell of each cloth that keeps its shape, as a quaternion x, y, z, w.
     pub rotations: Vec<[f64; 4]>,
+    /// Angular momentum of each part of a cloth before damping, if it is not pinned. Written and read in a pass.
+    pub spins: Vec<Option<Vector3<f64>>>,
     /// Inverse mass in 1/kg of the unpinned point.
     pub inverse_mass: Vec<R>,
     /// The particles of each object in which particles are born and die.

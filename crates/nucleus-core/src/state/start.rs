@@ -32,6 +32,7 @@ impl<R: Real> State<R> {
             wind_travel: [0.0; 3],
             chambers: Vec::new(),
             rotations: Vec::new(),
+            spins: Vec::new(),
             inverse_mass: vec![R::ZERO; rows],
             populations: (0..).zip(cloths).filter_map(|(at, cloth)| Population::of(at, cloth)).collect(),
         };

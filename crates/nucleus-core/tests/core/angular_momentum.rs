@@ -14,7 +14,7 @@ const GAS: Pressure =
     Pressure::Gas { start: 0.3, bulk: 2e4, pump: 0.0, tightness: 1.0, damping: 0.0, sealed: false };
 
 fn built(surface: Surface, velocities: Vec<Vec3>) -> Solver<f32> {
-    let lists = ClothLists { pressure: true, air: true, ..LINKS };
+    let lists = ClothLists { pressure: true, air: true, damp: true, ..LINKS };
     let mut builder = ModelBuilder::new();
     let cloth = Cloth::new(surface, Mass::PerArea(0.2), lists);
     let start = Start { velocities, ..Start::default() };
@@ -68,8 +68,8 @@ fn a_ball_under_pressure_does_not_begin_to_spin() {
     assert!(turn.norm() < 1e-3, "{turn} rad/s"); // 45 with the torque
 }
 
-#[test]
-fn each_part_of_a_mesh_keeps_its_own_angular_momentum() {
+/// Each part of a mesh, under pressure and damped.
+fn assert_each_part_keeps_its_own_angular_momentum(damp: f64) {
     let one = cushion();
     let count = one.positions.len();
     let mut two = one.clone();
@@ -82,10 +82,22 @@ fn each_part_of_a_mesh_keeps_its_own_angular_momentum() {
     let velocities = two.positions.iter().map(about).collect();
     let mut solver = built(two, velocities);
     let before = spin(&motion(&solver, 0..count))[0];
-    (0..24).for_each(|_| _ = solver.step(&inflated(), &mut ()));
+    let mut input = inflated();
+    input.cloths[0].damp = damp;
+    (0..24).for_each(|_| _ = solver.step(&input, &mut ()));
     let [first, second] = [0..count, count..2 * count].map(|part| spin(&motion(&solver, part)));
     assert!((first[0] / before.norm() - before.normalize()).norm() < 1e-3, "{} and {before}", first[0]);
     assert!(second[1].norm() < 0.01, "{} rad/s", second[1]);
+}
+
+#[test]
+fn each_part_of_a_mesh_keeps_its_own_angular_momentum() {
+    assert_each_part_keeps_its_own_angular_momentum(0.0);
+}
+
+#[test]
+fn damping_has_no_torque() {
+    assert_each_part_keeps_its_own_angular_momentum(2.0);
 }
 
 #[test]
