@@ -67,7 +67,7 @@ fn turn_back<R: Real>(rows: impl Iterator<Item = u32> + Clone, state: &mut State
     let Some(moments) = Moments::of(rows.clone(), state, lever_and_push) else { return };
     let Some(angle) = moments.turn(moments.torque()) else { return };
     for row in rows.map(|row| row as usize) {
-        let back = angle.cross(&moments.from_centre(state, row));
+        let back = angle.cross(&moments.offset(state, row));
         let moved = &mut state.displacement[row];
         for axis in 0..3 {
             let before = moved.0[axis];
@@ -110,7 +110,7 @@ fn spin_as_before<R: Real>(
     let (Some(before), Some(moments)) = (before, Moments::of_velocities(rows.clone(), state)) else { return };
     let Some(turn) = moments.turn(before - moments.torque()) else { return };
     for row in rows.map(|row| row as usize) {
-        let added = turn.cross(&moments.from_centre(state, row));
+        let added = turn.cross(&moments.offset(state, row));
         (0..3).for_each(|axis| state.velocity[row].0[axis] += R::from_f64(added[axis]));
     }
 }
@@ -173,7 +173,7 @@ impl Moments {
     }
 
     /// The position of a row, relative to the centre of mass.
-    fn from_centre<R: Real>(&self, state: &State<R>, row: usize) -> Vector3<f64> {
+    fn offset<R: Real>(&self, state: &State<R>, row: usize) -> Vector3<f64> {
         self.place(state, row) - self.sum / self.mass
     }
 

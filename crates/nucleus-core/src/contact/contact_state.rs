@@ -20,7 +20,7 @@ const TOUCHING: f64 = 1.02;
 /// Gap ratio below which a contact is compressed.
 const COMPRESSED: f64 = 0.9;
 /// Smallest weight at which the corner of an edge or a face takes part in a contact.
-const MIN_WEIGHT: f64 = 0.25;
+pub const MIN_WEIGHT: f64 = 0.25;
 
 /// The highest state so far of each row of the solver.
 struct HighestStates<'a>(&'a mut [ContactState]);

@@ -15,6 +15,7 @@ use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
 use crate::contact::response::{Adhesion, Push, Restitution, coulomb_correction};
+use crate::contact::room::NearSurface;
 use crate::contact::time_step::PositionWriter;
 use crate::input::frame::GroundPlane;
 use crate::math::{Real, Row4, add, dot, scale, sub};
@@ -261,6 +262,13 @@ impl<R: Real> GroundContact<'_, R> {
         gap < self.thickness(point) * R::from_f64(1.0 - TOUCHING) && row.0[3] > R::ZERO
     }
 
+    /// The plane as a surface near a point that started within its thickness.
+    pub fn near_surface(&self, point: u32) -> Option<NearSurface<R>> {
+        let start = self.start[self.writer.place_of(point)].xyz();
+        let (gap, thickness) = (self.plane.height_now(point, start), self.thickness(point));
+        (gap < thickness).then(|| NearSurface { point, normal: self.plane.normal(), gap, thickness })
+    }
+
     /// How far a point is above its thickness, in metres.
     pub fn room(&self, point: u32) -> R {
         self.plane.height_now(point, self.writer.row(point).xyz()) - self.thickness(point)
@@ -317,6 +325,7 @@ impl<R: Real> GroundContact<'_, R> {
         let most = R::from_f64(self.material.thickness);
         self.material.thickness_at(self.material_maps, ([point], [], &([R::ONE], [])), most)
             * self.thickness_scale
+            * self.material_maps.room.at([point], [R::ONE])
     }
 
     fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {

@@ -4,6 +4,7 @@
 use crate::contact::collider_maps::{ColliderFactors, ColliderMaps, max_factor};
 use crate::contact::kept_gaps::KeptGaps;
 use crate::contact::response::ADHESION_RANGE;
+use crate::contact::room::Room;
 use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane, ResistanceModel};
 use crate::input::particles::{ParticleRamp, RampTarget};
 use crate::math::Real;
@@ -317,6 +318,8 @@ pub struct MaterialMaps<R> {
     pub colliders: Vec<ColliderMaps>,
     /// Gaps to colliders that points keep from the start (Classic).
     pub kept_gaps: KeptGaps<R>,
+    /// The share of the thickness for which there is room between colliders, in a time step that had too little.
+    pub room: Room<R>,
 }
 
 impl<R: Real> MaterialMaps<R> {
@@ -365,6 +368,7 @@ impl<R: Real> MaterialMaps<R> {
             max_thickness_factor: cloths.iter().map(largest).collect(),
             colliders: colliders.iter().map(ColliderMaps::new).collect(),
             kept_gaps: KeptGaps::default(),
+            room: Room::default(),
         }
     }
 }

@@ -49,6 +49,7 @@
 //! | contact among cloths, friction anchors, untangling | [`cloth`] |
 //! | the ground plane | [`ground`] |
 //! | gaps that points keep from the start (Classic) | [`kept_gaps`] |
+//! | room between surfaces that face each other | [`room`] |
 //! | points inside a collider | [`depenetration`] |
 //! | push-out of points near a surface | [`push_out`] |
 //! | the state of contact, and the inputs and outputs of its passes | [`system`] |
@@ -78,6 +79,7 @@
 //! | `ccd::CERTIFIED_GAP` | 0.02 t | far above rounding error |
 //! | `collider::sweep::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
 //! | `response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |
+//! | `room::FACING` | 0.5 | cosine: at a larger angle a point finds room beside the two surfaces |
 //! | `response::TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |
 //! | `cloth::broad_phase::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
 //! | `cloth::broad_phase::BOUND_RADIUS` | 0.4 t or 0.08 e | smaller: more searches; larger: more contacts |
@@ -115,6 +117,7 @@ pub mod point_field;
 pub mod push_out;
 pub mod response;
 pub mod restitution;
+pub mod room;
 pub mod safeguard;
 pub mod system;
 pub mod time_step;

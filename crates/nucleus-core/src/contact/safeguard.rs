@@ -1,7 +1,8 @@
 //! Penetration safeguard: certifies at the end of a time step that no pair passed through each other, else
 //! applies fallbacks in a fixed order.
 //!
-//! 1. Contacts push again, four times.
+//! 1. Contacts push again, four times. Where surfaces that face each other leave too little room, each point keeps the share
+//!    of its thickness that fits.
 //! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little room for
 //!    all of it.
 //! 3. Motion is truncated at a division plane between the two elements, or, at a collider or the ground, reverted to the
@@ -22,6 +23,7 @@ use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::frozen::Frozen;
 use crate::contact::cloth::pass::resolve_cloth_contacts;
 use crate::contact::collider::affine_motion::AffineMotion;
+use crate::contact::collider::facing::find_room;
 use crate::contact::collider::free_points::settle_free_points;
 use crate::contact::collider::pass::{
     accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
@@ -35,6 +37,11 @@ use crate::output::{Stage, StepObserver};
 
 /// Certifies all pairs at the end of a time step, and applies the fallbacks.
 pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
+    certify_or_fall_back(pass, watch);
+    pass.contact.material_maps.room.clear();
+}
+
+fn certify_or_fall_back<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
     let has_cloth_contact = pass.contact.cloth_contacts.as_ref().is_some_and(ClothContacts::is_enabled);
     for attempt in 0..=TRUNCATING_ENDS + FREEZE_ATTEMPTS {
         watch.enter(Stage::BroadPhase);
@@ -66,6 +73,9 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
                 resolve_cloth_contacts(pass, thickness_scale, watch);
             }
             mask_islands(pass.contact, |[among_cloths, with_colliders]| among_cloths || with_colliders);
+            if attempt == 0 && sides > 0 {
+                find_room(pass);
+            }
             resolve_collider_contacts(pass, thickness_scale, watch);
             pass.contact.contact_mask.clear();
         } else if attempt < TRUNCATING_ENDS {

@@ -214,12 +214,13 @@ impl<R: Real> ColliderStep<'_, R> {
         weights: [R; N],
     ) -> R {
         let maps = self.material_maps;
-        if maps.thickness.is_empty() && maps.kept_gaps.is_empty() && self.collider_maps.is_none() {
+        let has_maps = !maps.thickness.is_empty() || self.collider_maps.is_some();
+        if !has_maps && maps.kept_gaps.is_empty() && maps.room.is_ample() {
             return self.thickness;
         }
         let most = R::from_f64(self.material.thickness);
         let thickness = material.mapped_thickness(maps, (points, [], &(weights, [])), most);
-        maps.kept_gaps.at(points, weights, thickness) * self.thickness_scale
+        maps.kept_gaps.at(points, weights, thickness) * self.thickness_scale * maps.room.at(points, weights)
     }
 
     /// Whether collisions with this collider are carried out in part: cloth may then pass through it.

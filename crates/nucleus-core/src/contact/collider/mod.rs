@@ -23,6 +23,7 @@
 //! | fallbacks for points of a liquid or of links | [`free_points`] |
 //! | starts inside the contact thickness | [`start_gaps`] |
 //! | points that leave one while another is in their way | [`pinched`] |
+//! | surfaces that face each other with cloth between them | [`facing`] |
 //! | the motion of what it carries along | [`affine_motion`] |
 //! | the passes of a time step, over each cloth's lists of contacts | [`pass`], [`lists`] |
 
@@ -33,6 +34,7 @@ pub mod candidates;
 pub mod contact;
 pub mod contact_list;
 pub mod contacts;
+pub mod facing;
 pub mod frame_start;
 pub mod free_points;
 pub mod lists;
