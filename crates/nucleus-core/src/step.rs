@@ -178,7 +178,7 @@ fn solve_substeps<R: CompiledReal>(
                 solve_time_step(solver, &now, counters, observer)?;
             }
         }
-        end_substep(solver, frame, schedule, substep, counters);
+        end_substep(solver, frame, schedule, substep, &alternates, counters);
         observer.enter(Stage::Observe);
         observer.substep(SubstepIndex { substep, substeps: schedule.substeps }, solver);
     }
@@ -217,13 +217,14 @@ fn end_substep<R: CompiledReal>(
     frame: &FrameInput,
     schedule: &Schedule<R>,
     substep: u32,
+    alternates: &[bool],
     counters: &mut ContactCounters,
 ) {
     let substep_length = schedule.h * f64::from(schedule.steps);
     let end = f64::from(substep) / f64::from(schedule.substeps);
     turn_particles(solver, frame, [end, substep_length]);
     let has_lost_links = age_particles(solver, frame, schedule, substep, counters);
-    damp(&solver.model.cloths, &mut solver.state, frame, substep_length, &solver.pool);
+    damp(&solver.model.cloths, &mut solver.state, frame, alternates, substep_length, &solver.pool);
     slow_particles(&solver.model.cloths, &mut solver.state, frame, substep_length);
     let Solver { model, state, contact, links, .. } = solver;
     damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);

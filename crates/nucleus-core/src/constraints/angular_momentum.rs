@@ -9,7 +9,8 @@
 //! away. Distances within the cloth stay as they are.
 //!
 //! `damp` has a torque too, because it acts across links as well as along them: a cushion that is blown up would turn, and
-//! a spinning sheet would stop in empty space. The velocities are turned in the same way.
+//! a spinning sheet would stop in empty space. The velocities of the same cloths are turned in the same way. Elsewhere damping
+//! stills the rotation that contact and links leave.
 
 use nalgebra::{Matrix3, Vector3};
 

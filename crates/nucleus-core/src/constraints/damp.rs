@@ -1,7 +1,8 @@
 //! Damping of the relative velocity of linked points, once per substep.
 //!
 //! `stretchDamp` acts along the links only, `damp` in all directions. Both act on pairs of points, equal and opposite, so
-//! they conserve momentum; the torque of `damp` is taken away. A cloth that moves as a rigid body is not slowed.
+//! they conserve momentum. The torque of `damp` is taken away where that of sweeps is ([`super::angular_momentum`]): such a
+//! cloth is not slowed when it moves as a rigid body.
 
 use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::math::{Real, Row4, dot};
@@ -10,25 +11,30 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
-use super::angular_momentum::without_torque;
+use super::angular_momentum::{keeps_angular_momentum, may_keep_angular_momentum, without_torque};
 use super::row_loops::for_all_rows;
 use super::strength_map::StrengthGroup;
 use super::stretch::LinkGroup;
 
-/// Damps all cloths once, for a substep of this many seconds. Reads displacements, writes velocities.
+/// Damps all cloths once, for a substep of this many seconds. `is_free` says which move freely. Reads displacements, writes
+/// velocities.
 pub fn damp<R: Real>(
     cloths: &[ClothModel<R>],
     state: &mut State<R>,
     frame: &FrameInput,
+    is_free: &[bool],
     substep: f64,
     pool: &ThreadPool,
 ) {
-    for (cloth, settings) in cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.damps) {
+    for (index, (cloth, settings)) in cloths.iter().zip(&frame.cloths).enumerate() {
         let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
-        if !damping.is_felt() {
+        if !cloth.damps || !damping.is_felt() {
             continue;
         }
-        match damping.damp > 0.0 {
+        let has_torque = damping.damp > 0.0
+            && may_keep_angular_momentum(frame, index)
+            && keeps_angular_momentum(cloth, &settings.pressure, is_free[index]);
+        match has_torque {
             true => without_torque(cloth, state, |state| sweep(cloth, state, &damping, pool)),
             false => sweep(cloth, state, &damping, pool),
         }
