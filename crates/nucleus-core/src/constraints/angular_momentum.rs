@@ -59,13 +59,12 @@ pub fn keep_angular_momentum<R: Real>(cloth: &ClothModel<R>, state: &mut State<R
 }
 
 fn turn_back<R: Real>(rows: impl Iterator<Item = u32> + Clone, state: &mut State<R>, h: f64) {
-    let lever_and_push = |state: &State<R>, row: usize, origin: Vector3<f64>| {
+    let start_and_push = |row: usize, anchor: Vector3<f64>| {
         let [now, predicted, velocity] =
             [state.displacement[row], state.predicted[row], state.velocity[row]].map(vector);
-        let start = Vector3::from(state.anchor[row]) - origin + predicted - velocity * h;
-        [start, now - predicted]
+        [anchor + predicted - velocity * h, now - predicted]
     };
-    let Some(moments) = Moments::of(rows.clone(), state, lever_and_push) else { return };
+    let Some(moments) = Moments::of(rows.clone(), state, start_and_push) else { return };
     let Some(angle) = moments.turn(moments.torque()) else { return };
     for row in rows.map(|row| row as usize) {
         let back = angle.cross(&moments.offset(state, row));
@@ -132,12 +131,12 @@ struct Moments {
 }
 
 impl Moments {
-    /// Those of some rows, given the lever, relative to an origin, and the push of each; `None` where one is pinned, which
-    /// takes any torque.
+    /// Those of some rows, with the lever and the push of each, given its anchor relative to the origin; `None` where one is
+    /// pinned, which takes any torque.
     fn of<R: Real>(
         mut rows: impl Iterator<Item = u32> + Clone,
         state: &State<R>,
-        lever_and_push: impl Fn(&State<R>, usize, Vector3<f64>) -> [Vector3<f64>; 2],
+        lever_and_push: impl Fn(usize, Vector3<f64>) -> [Vector3<f64>; 2],
     ) -> Option<Self> {
         let (zero, square) = (Vector3::zeros(), Matrix3::zeros());
         let origin = Vector3::from(state.anchor[rows.clone().next()? as usize]);
@@ -147,8 +146,9 @@ impl Moments {
             let row = row as usize;
             let inverse_mass = state.displacement[row].0[3].to_f64();
             let mass = 1.0 / inverse_mass;
-            let place = all.place(state, row);
-            let [lever, push] = lever_and_push(state, row, origin);
+            let anchor = all.anchor(state, row);
+            let place = anchor + vector(state.displacement[row]);
+            let [lever, push] = lever_and_push(row, anchor);
             all.mass += mass;
             all.sum += place * mass;
             all.lever_sum += lever * mass;
@@ -162,20 +162,20 @@ impl Moments {
 
     /// The lever of a point is its position, and the push its velocity.
     fn of_velocities<R: Real>(rows: impl Iterator<Item = u32> + Clone, state: &State<R>) -> Option<Self> {
-        Self::of(rows, state, |state, row, origin| {
-            let place = Vector3::from(state.anchor[row]) - origin + vector(state.displacement[row]);
-            [place, vector(state.velocity[row])]
-        })
+        let place_and_velocity = |row: usize, anchor: Vector3<f64>| {
+            [anchor + vector(state.displacement[row]), vector(state.velocity[row])]
+        };
+        Self::of(rows, state, place_and_velocity)
     }
 
-    /// The position of a row, relative to the origin.
-    fn place<R: Real>(&self, state: &State<R>, row: usize) -> Vector3<f64> {
-        Vector3::from(state.anchor[row]) - self.origin + vector(state.displacement[row])
+    /// The anchor of a row, relative to the origin.
+    fn anchor<R: Real>(&self, state: &State<R>, row: usize) -> Vector3<f64> {
+        Vector3::from(state.anchor[row]) - self.origin
     }
 
     /// The position of a row, relative to the centre of mass.
     fn offset<R: Real>(&self, state: &State<R>, row: usize) -> Vector3<f64> {
-        self.place(state, row) - self.sum / self.mass
+        self.anchor(state, row) + vector(state.displacement[row]) - self.sum / self.mass
     }
 
     /// Σ m s × p about the centre of mass.

@@ -325,7 +325,7 @@ impl<R: Real> GroundContact<'_, R> {
         let most = R::from_f64(self.material.thickness);
         self.material.thickness_at(self.material_maps, ([point], [], &([R::ONE], [])), most)
             * self.thickness_scale
-            * self.material_maps.room.at([point], [R::ONE])
+            * self.material_maps.room.share([point], [R::ONE])
     }
 
     fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {

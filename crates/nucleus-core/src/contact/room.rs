@@ -42,7 +42,7 @@ impl<R: Real> Room<R> {
 
     /// The share of the thickness that a contact keeps, interpolated over its points.
     #[inline(always)]
-    pub fn at<const N: usize>(&self, points: [u32; N], weights: [R; N]) -> R {
+    pub fn share<const N: usize>(&self, points: [u32; N], weights: [R; N]) -> R {
         if self.shares.is_empty() {
             return R::ONE;
         }
@@ -62,7 +62,7 @@ impl<R: Real> Room<R> {
         list(surfaces);
         surfaces.sort_by_key(|surface| surface.point);
         for of_point in surfaces.chunk_by(|a, b| a.point == b.point) {
-            let least = share(of_point);
+            let least = least_share(of_point);
             if least < R::ONE {
                 shares.resize(rows, R::ONE);
                 shares[of_point[0].point as usize] = least;
@@ -72,7 +72,7 @@ impl<R: Real> Room<R> {
 }
 
 /// The smallest share of any two surfaces that face each other; 1 where a point has room.
-fn share<R: Real>(surfaces: &[NearSurface<R>]) -> R {
+fn least_share<R: Real>(surfaces: &[NearSurface<R>]) -> R {
     let mut least = R::ONE;
     for (at, a) in surfaces.iter().enumerate() {
         for b in &surfaces[at + 1..] {
@@ -100,8 +100,8 @@ mod tests {
         let of_one_side = [near(0, up, 0.1), near(0, up, 0.2)];
         let of_both = [near(1, up, 0.5), near(2, up, 0.1), near(1, down, 1.5), near(2, aside, 0.1)];
         room.find(4, |near| near.extend(of_one_side.into_iter().chain(of_both)));
-        assert_eq!([0, 1, 2, 3].map(|point| room.at([point], [1.0])), [1.0, 0.5, 1.0, 1.0]);
-        assert_eq!(room.at([1, 3], [0.5, 0.5]), 0.75, "an edge is interpolated");
+        assert_eq!([0, 1, 2, 3].map(|point| room.share([point], [1.0])), [1.0, 0.5, 1.0, 1.0]);
+        assert_eq!(room.share([1, 3], [0.5, 0.5]), 0.75, "an edge is interpolated");
         room.find(4, |near| near.extend(of_one_side));
         assert!(room.is_ample(), "one side leaves room");
     }
@@ -110,6 +110,6 @@ mod tests {
     fn surfaces_that_overlap_leave_no_room_but_none_below_zero() {
         let mut room = Room::default();
         room.find(1, |list| list.extend([near(0, [0.0, 1.0, 0.0], -3.0), near(0, [0.0, -1.0, 0.0], 1.0)]));
-        assert_eq!(room.at([0], [1.0]), 0.0);
+        assert_eq!(room.share([0], [1.0]), 0.0);
     }
 }

@@ -220,7 +220,9 @@ impl<R: Real> ColliderStep<'_, R> {
         }
         let most = R::from_f64(self.material.thickness);
         let thickness = material.mapped_thickness(maps, (points, [], &(weights, [])), most);
-        maps.kept_gaps.at(points, weights, thickness) * self.thickness_scale * maps.room.at(points, weights)
+        maps.kept_gaps.at(points, weights, thickness)
+            * self.thickness_scale
+            * maps.room.share(points, weights)
     }
 
     /// Whether collisions with this collider are carried out in part: cloth may then pass through it.
