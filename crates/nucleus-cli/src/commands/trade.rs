@@ -10,8 +10,8 @@ use nucleus_measure::result_cache::{ResultCache, write_atomic};
 use nucleus_measure::trade::SweepOptions;
 use nucleus_measure::trade::run::Trajectory;
 use nucleus_measure::trade::{
-    Benchmark, Choice, Quantity, Reading, RemoteRun, Request, Setting, SweepControl, SweepResult, TradeError,
-    Wish, run_sweep,
+    Benchmark, Choice, Progress, Quantity, Reading, RemoteRun, Request, Setting, Survey, SweepControl,
+    SweepResult, TradeError, Wish, run_sweep,
 };
 
 use crate::options::{self, FrameRange};
@@ -26,9 +26,11 @@ mod page;
 
 use elsewhere::{Remote, RemoteSweep};
 
-/// Default length of the comparison, in seconds from the start; and with `--thorough`.
+/// Least length of the comparison by default, in seconds from the start; and with `--thorough`.
 const DEFAULT_SECONDS: f64 = 1.0;
 const THOROUGH_SECONDS: f64 = 2.0;
+/// Its largest length by default: the time of a sweep grows with it.
+const MOST_SECONDS: f64 = 4.0;
 
 /// What a longer sweep adds, at the end of a short one.
 const MORE: &str = "`--thorough` compares two seconds, tries more settings and resolves smaller errors, in two to five \
@@ -45,7 +47,8 @@ const DEFAULT_ERROR: f64 = 0.01;
 pub struct Trade {
     /// The scene (.ron).
     scene: PathBuf,
-    /// Frames to compare: a count that includes the start frame (`48`) or a range (`10..58`); default: 1 second.
+    /// Frames to compare: a count that includes the start frame (`48`) or a range (`10..58`); default: 1 second, and up to 4
+    /// where the cloth is stretched most later.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
     /// Recommend the cheapest setting with at most this error (`1%`) in every quantity.
@@ -148,18 +151,22 @@ impl Trade {
     /// Runs the settings that are not stored yet, and reports the recommendation.
     pub fn run(self) -> Result<Outcome> {
         let Some((scene, text)) = self.scene()? else { return Ok(Outcome::InvalidInput) };
-        let subject = match Benchmark::new(&scene) {
-            Ok(subject) => subject,
+        let whole = match Benchmark::new(&scene) {
+            Ok(whole) => whole,
             Err(error) => return problem(error),
         };
-        let store = quality::store(&subject);
+        let store = quality::store(&whole);
         if self.rerun {
             self.refuse_old_plan()?;
             store.clear()?;
         }
         process::listen_for_signals()?;
-        match self.run_sweep(&subject, &store) {
-            Ok(found) => self.report(&subject, &store, &found, &text),
+        let measured = self.with_frames(whole, scene, &store).and_then(|subject| {
+            let found = self.run_sweep(&subject, &store)?;
+            Ok((subject, found))
+        });
+        match measured {
+            Ok((subject, found)) => self.report(&subject, &store, &found, &text),
             Err(TradeError::Interrupted) => {
                 say!("interrupted: finished runs are stored; the same command continues the sweep");
                 Ok(Outcome::Interrupted)
@@ -186,19 +193,52 @@ impl Trade {
         Ok(())
     }
 
-    /// The scene with the frames to compare, and its text; `None` if it has errors, which are reported.
+    /// The scene with the frames that are asked for, and its text; `None` if it has errors, which are reported.
     fn scene(&self) -> Result<Option<(Scene, String)>> {
         let file = files::open_scene(&self.scene, self.frames)?;
         let file = if self.part.is_none() { file.with_first_frame() } else { file };
-        let Some((mut scene, _, text)) = file.report()? else {
-            return Ok(None);
-        };
-        if self.frames.is_none() {
-            let seconds = if self.thorough { THOROUGH_SECONDS } else { DEFAULT_SECONDS };
-            let frames = (seconds * scene.time.fps).ceil() as i64;
-            scene.time.end = scene.time.end.min(scene.time.start.saturating_add(frames));
+        Ok(file.report()?.map(|(scene, _, text)| (scene, text)))
+    }
+
+    /// The scene with the frames to compare: those that are asked for, or those that its survey asks for.
+    fn with_frames(
+        &self,
+        whole: Benchmark,
+        mut scene: Scene,
+        store: &ResultCache,
+    ) -> Result<Benchmark, TradeError> {
+        let fps = scene.time.fps;
+        let frames = |seconds: f64| (seconds * fps).ceil() as usize;
+        let least = frames(if self.thorough { THOROUGH_SECONDS } else { DEFAULT_SECONDS });
+        if self.frames.is_some() || whole.frames() <= least {
+            return Ok(whole);
         }
-        Ok(Some((scene, text)))
+        let mut progress = SweepProgress::new();
+        let survey = Survey::of(&whole, options::thread_count(self.jobs), store, &mut |done| {
+            progress.show(&Progress { done, runs: [0, 1], kept: 0 });
+            !process::is_interrupted()
+        });
+        progress.end();
+        let (survey, start) = (survey?, scene.time.start);
+        let named = |frame: usize| start.saturating_add_unsigned(frame as u64);
+        let wanted = survey.frames(least, fps);
+        let compared = if wanted > frames(MOST_SECONDS) { least } else { wanted };
+        scene.time.end = named(compared);
+        if let Some(busiest) = survey.busiest().filter(|_| wanted > least) {
+            let (busiest, end) = (named(busiest), named(compared));
+            match compared < wanted {
+                true => say!(
+                    "warning: frames {start} to {end} are compared, and the cloth is stretched most at frame {busiest}: \
+                     `--frames {start}..{}` compares that too, in about {:.0} times the time",
+                    named(wanted),
+                    wanted as f64 / compared as f64
+                ),
+                false => {
+                    say!("comparing frames {start} to {end}: the cloth is stretched most at frame {busiest}")
+                }
+            }
+        }
+        Benchmark::new(&scene)
     }
 
     fn run_sweep(&self, subject: &Benchmark, store: &ResultCache) -> Result<SweepResult, TradeError> {
@@ -255,13 +295,17 @@ impl Trade {
         std::fs::create_dir_all(&self.out)
             .with_context(|| format!("cannot create the folder `{}`", self.out.display()))?;
         let path = |end: &str| self.out.join(format!("{stem}.trade.{end}"));
-        let json = serde_json::to_string_pretty(trade)? + "\n";
-        let files = [("html", html), ("csv", report::csv(trade)), ("json", json)];
+        let json = report::json(trade, &stem, &wish);
+        let files = [
+            ("html", html),
+            ("csv", report::csv(trade)),
+            ("json", serde_json::to_string_pretty(&json)? + "\n"),
+        ];
         for (end, content) in &files {
             write_atomic(&path(end), content.as_bytes())?;
         }
         if self.json {
-            output::report_json(&serde_json::to_value(trade)?);
+            output::report_json(&json);
         } else {
             let names = files.map(|(end, _)| format!("`{}`", path(end).display()));
             let said = format!("{}\n{recommendation}", report::text(trade));

@@ -62,6 +62,54 @@ fn a_sweep_writes_a_page_a_table_and_json_and_recommends_a_setting() {
     assert_eq!(read("csv").lines().count(), 4);
     let json: serde_json::Value = serde_json::from_str(&read("json")).unwrap();
     assert_eq!(json["points"].as_array().unwrap().len(), 3);
+    assert_eq!((json["scene"].as_str(), json["wanted"]["error"].as_f64()), (Some("drape"), Some(0.01)));
+    let recommended = &json["recommendation"];
+    let words = recommended["text"].as_str().unwrap();
+    assert!(said.contains(words), "{words}: {said}");
+    assert!(
+        ["found", "nearest", "unresolved"].contains(&recommended["choice"].as_str().unwrap()),
+        "{recommended}"
+    );
+    let is_recommended = |point: &serde_json::Value| *point == recommended["point"];
+    assert!(json["points"].as_array().unwrap().iter().any(is_recommended));
+    // Nothing measures the finer reference.
+    assert_eq!(
+        (&json["reference"]["error"], json["reference"]["errors"].as_array().unwrap().len()),
+        (&serde_json::Value::Null, 0)
+    );
+}
+
+/// A sheet of 4 kg/m² that falls for 1.2 seconds, onto a ball.
+const LATE: &str = r#"Scene(
+    time: (start: 1, end: 48, fps: 24),
+    nodes: {
+        "nucleus1": nucleus(spaceScale: 0.01, evaluations: 24, subSteps: 1),
+        "plane": polyPlane(width: 100, height: 100, subdivisions: (8, 8), translate: (0, 730, 0)),
+        "sheet": nCloth(inputMesh: "plane", selfCollide: false),
+        "sphere": polySphere(radius: 30, subdivisions: (12, 8)),
+        "ball": nRigid(inputMesh: "sphere"),
+    },
+)
+"#;
+
+#[test]
+fn by_default_the_frames_up_to_the_largest_strain_are_compared() {
+    let folder = folder();
+    fs::write(folder.path().join("late.ron"), LATE).unwrap();
+    let sweep = ["trade", "late.ron", "--evaluations", "12", "--substeps", "1", "--json"];
+    let output = nucleus(folder.path(), &sweep);
+    let json: serde_json::Value =
+        serde_json::from_str(&stdout(&output)).unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
+    let last = json["frames"][1].as_i64().unwrap();
+    assert!((31..48).contains(&last), "{}", stderr(&output));
+    let said = format!("comparing frames 1 to {last}: the cloth is stretched most at frame ");
+    assert!(stderr(&output).contains(&said), "{}", stderr(&output));
+    // Frames that are asked for are compared, and the survey is kept.
+    let asked = nucleus(folder.path(), &[&sweep[..], &["--frames", "8"]].concat());
+    assert!(!stderr(&asked).contains("comparing frames"), "{}", stderr(&asked));
+    assert_eq!(kept_lines(folder.path(), "surveys.jsonl"), 1);
+    nucleus(folder.path(), &sweep);
+    assert_eq!(kept_lines(folder.path(), "surveys.jsonl"), 1);
 }
 
 #[test]

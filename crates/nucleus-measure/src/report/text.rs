@@ -203,7 +203,7 @@ fn troubles(trade: &Trade) -> Vec<String> {
 
 /// CSV: one setting per line, by increasing cost; times in milliseconds, errors and strains as ratios.
 pub fn csv(trade: &Trade) -> String {
-    let head = "reading,substeps,collision_iterations,evaluations,resistance_factor,ms_per_frame,error,limited_by,\
+    let head = "reading,substeps,collision_iterations,evaluations,resistance_factor,tethers,ms_per_frame,error,limited_by,\
                 error_position,error_stretch,error_worst_stretch,error_shape,error_silhouette,error_energy,\
                 position_rms,position_max,strain_99,strain_max,energy_created,least_gap,pairs_unresolved,pairs_per_frame,\
                 broad_phases_per_frame,first_frame_not_finite,sound,frontier,hash\n";
@@ -223,6 +223,7 @@ pub fn csv(trade: &Trade) -> String {
             setting.collision_iterations.to_string(),
             setting.evaluations.to_string(),
             setting.resistance.to_string(),
+            setting.tethers.to_string(),
             point.ms.to_string(),
             maybe(point.error),
             point.limit.map(Quantity::name).unwrap_or_default().to_owned(),

@@ -1,27 +1,22 @@
 //! The scene of a sweep, its facts before a run, and the scene at another setting.
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, Mass, Real, ResistanceModel};
+use nucleus_core::{ClothId, Mass, Real};
 use nucleus_graph::Simulation;
-use nucleus_graph::animation::Curve;
-use nucleus_graph::attributes::{Attribute, Choice, Key, Value, n_base, n_cloth, nucleus};
+use nucleus_graph::attributes::{Key, n_base, n_cloth, nucleus};
 use nucleus_graph::compile::budget::hanging;
 use nucleus_graph::compile::{Object, ObjectKind, Program, compile};
-use nucleus_graph::graph::{Graph, NodeId, Setting as Held};
-use nucleus_graph::scene::edit::{Edit, NewValue};
+use nucleus_graph::scene::edit::Edit;
 use nucleus_graph::scene::{Record, Scene, write_scene};
 
-use super::setting::{Reading, Setting};
+use super::scene_at::{SettableCloth, SettableScene, own_setting, set_quality};
+use super::setting::Setting;
 use crate::metrics::deformation::{Edges, size};
 use crate::metrics::shape::{Outline, silhouette_difference, surface_distance, triangles};
 use crate::result_cache::{Fingerprint, ResultCacheError};
 
 /// Minimum number of frames, the start included.
 const FEWEST_FRAMES: i64 = 3;
-
-/// In-plane resistances of cloth.
-static PLANE_RESISTANCES: [&Key<f64>; 3] =
-    [&n_cloth::STRETCH_RESISTANCE, &n_cloth::COMPRESSION_RESISTANCE, &n_cloth::SHEAR_RESISTANCE];
 
 /// References that do not resolve an error of this size are rejected.
 pub(super) const MAX_REFERENCE_UNCERTAINTY: f64 = 0.1;
@@ -90,7 +85,9 @@ pub struct Benchmark {
     scene: Scene,
     own: Setting,
     program: Program,
-    cloths: Vec<ClothFacts>,
+    cloths: Vec<SettableCloth>,
+    /// The edges of each cloth.
+    edges: Vec<Edges>,
     /// Diagonal of the bounding box of all cloth at the start, in metres.
     pub size: f64,
     /// Mass of each point, cloth after cloth, in kilograms.
@@ -101,17 +98,6 @@ pub struct Benchmark {
     pub is_closed: bool,
     /// Triangles of all cloth, with the points of all cloth numbered through.
     triangles: Vec<[u32; 3]>,
-}
-
-/// Facts of a cloth at the start.
-struct ClothFacts {
-    node: NodeId,
-    edges: Edges,
-    points: usize,
-    /// Area in m².
-    area: f64,
-    /// Whether it hangs by pins, without tethers.
-    hangs: bool,
 }
 
 impl Benchmark {
@@ -126,7 +112,7 @@ impl Benchmark {
         if frames < FEWEST_FRAMES {
             return Err(TradeError::TooFewFrames { frames });
         }
-        let cloths = cloth_facts(scene, &program);
+        let (cloths, edges): (Vec<_>, Vec<_>) = cloth_facts(scene, &program).into_iter().unzip();
         if cloths.is_empty() {
             return Err(TradeError::NothingDynamic);
         }
@@ -137,7 +123,18 @@ impl Benchmark {
         let own = own_setting(scene, input.resistance);
         let (gravity, is_closed) = (input.gravity, is_closed(scene));
         let triangles = all_triangles(&program);
-        Ok(Self { scene: scene.clone(), own, program, cloths, size, masses, gravity, is_closed, triangles })
+        Ok(Self {
+            scene: scene.clone(),
+            own,
+            program,
+            cloths,
+            edges,
+            size,
+            masses,
+            gravity,
+            is_closed,
+            triangles,
+        })
     }
 
     /// Energy of a fall of all cloth by its own size, in joules; 0 without gravity.
@@ -191,88 +188,24 @@ impl Benchmark {
     ///
     /// The total mass stays the same: Physical reads `pointMass` per area, Classic per point.
     pub fn set(&self, setting: &Setting) -> Scene {
-        let mut scene = self.scene.clone();
-        set_quality(&mut scene.graph, setting);
-        for cloth in &self.cloths {
-            let node = self.scene.graph.node(cloth.node);
-            let factor = self.mass_factor(cloth, setting);
-            if factor != 1.0 {
-                let mass = node.get(&n_base::POINT_MASS) * factor;
-                put(&mut scene.graph, cloth.node, &n_base::POINT_MASS.row, Held::Fixed(Value::Float(mass)));
-            }
-        }
-        if setting.tethers {
-            for cloth in self.cloths.iter().filter(|cloth| cloth.hangs) {
-                put(&mut scene.graph, cloth.node, &n_cloth::TETHERS.row, Held::Fixed(Value::Bool(true)));
-            }
-        }
-        if setting.reading == Reading::Classic && setting.resistance != 1.0 {
-            for cloth in &self.cloths {
-                scale_resistances(&mut scene.graph, cloth.node, setting.resistance);
-            }
-        }
-        scene
+        self.settable().set(setting)
     }
 
     /// Edits of the scene file that apply a setting; none for its own.
     pub fn edits(&self, setting: &Setting) -> Vec<Edit> {
-        let Some(id) = nucleus_of(&self.scene.graph) else { return Vec::new() };
-        let of = |node: NodeId, attribute: &'static str, to: NewValue| {
-            let node = self.scene.graph.node(node).name().to_owned();
-            Edit { node, attribute: attribute.to_owned(), to }
-        };
-        let text = |to: &dyn ToString| NewValue::Text(to.to_string());
-        let own = &self.own;
-        let mut edits = Vec::new();
-        if setting.reading != own.reading {
-            let word = if setting.reading == Reading::Classic { "classic" } else { "physical" };
-            edits.push(of(id, "resistanceModel", text(&word)));
-            let mass = |cloth: &ClothFacts| (cloth.node, self.mass_factor(cloth, setting));
-            for (node, factor) in self.cloths.iter().map(mass) {
-                edits.push(of(node, "pointMass", self.scaled_from(node, &n_base::POINT_MASS, factor)));
-            }
-        }
-        if setting.substeps != own.substeps {
-            edits.push(of(id, "subSteps", text(&setting.substeps)));
-        }
-        if setting.collision_iterations != own.collision_iterations {
-            edits.push(of(id, "maxCollisionIterations", text(&setting.collision_iterations)));
-        }
-        if setting.reading == Reading::Physical && setting.evaluations != own.evaluations {
-            let factor = setting.evaluations / own.evaluations;
-            let to = NewValue::Scaled { factor, least: 1.0, default: own.evaluations };
-            edits.push(of(id, "evaluations", to));
-        }
-        if setting.reading == Reading::Classic && setting.resistance != 1.0 {
-            for cloth in &self.cloths {
-                edits.extend(PLANE_RESISTANCES.map(|key| {
-                    of(cloth.node, key.row.name, self.scaled_from(cloth.node, key, setting.resistance))
-                }));
-            }
-        }
-        edits
+        self.settable().edits(setting)
     }
 
-    fn scaled_from(&self, node: NodeId, key: &Key<f64>, factor: f64) -> NewValue {
-        NewValue::Scaled { factor, least: 0.0, default: self.scene.graph.node(node).get(key) }
-    }
-
-    /// Factor on `pointMass` that keeps the total mass of a cloth at a setting.
-    fn mass_factor(&self, cloth: &ClothFacts, setting: &Setting) -> f64 {
-        let points = cloth.points as f64;
-        match (self.own.reading, setting.reading) {
-            (Reading::Physical, Reading::Classic) => cloth.area / points,
-            (Reading::Classic, Reading::Physical) if cloth.area > 0.0 => points / cloth.area,
-            _ => 1.0,
-        }
+    fn settable(&self) -> SettableScene<'_> {
+        SettableScene { scene: &self.scene, own: self.own, cloths: &self.cloths }
     }
 
     /// Strain of all cloth in a state: the maximum of each figure over the cloths.
     pub fn strain(&self, points: &[Vector3<f64>]) -> crate::metrics::deformation::Strain {
         let mut all = crate::metrics::deformation::Strain::default();
         let mut first = 0;
-        for cloth in &self.cloths {
-            let strain = cloth.edges.strain(&points[first..first + cloth.points]);
+        for (cloth, edges) in self.cloths.iter().zip(&self.edges) {
+            let strain = edges.strain(&points[first..first + cloth.points]);
             first += cloth.points;
             all.rms = crate::metrics::max_or_nan(all.rms, strain.rms);
             all.p99 = crate::metrics::max_or_nan(all.p99, strain.p99);
@@ -327,7 +260,7 @@ fn compiled(scene: &Scene) -> Result<Program, TradeError> {
     })
 }
 
-fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
+fn cloth_facts(scene: &Scene, program: &Program) -> Vec<(SettableCloth, Edges)> {
     let is_cloth = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(_));
     let cloths = program.objects().iter().filter(is_cloth).zip(program.model().cloths());
     let facts = |(object, cloth): (&Object, &nucleus_core::Cloth)| {
@@ -339,13 +272,9 @@ fn cloth_facts(scene: &Scene, program: &Program) -> Vec<ClothFacts> {
             Mass::PerArea(density) => even(cloth.mass) / density,
             Mass::PerPoint(_) => even(Mass::PerArea(1.0)),
         };
-        Some(ClothFacts {
-            node: scene.graph.find(&object.name)?,
-            edges: Edges::of(&cloth.surface),
-            points: object.points,
-            area,
-            hangs: hangs(program, object),
-        })
+        let node = scene.graph.find(&object.name)?;
+        let settable = SettableCloth { node, points: object.points, area, hangs: hangs(program, object) };
+        Some((settable, Edges::of(&cloth.surface)))
     };
     cloths.filter_map(facts).collect()
 }
@@ -367,38 +296,6 @@ fn all_triangles(program: &Program) -> Vec<[u32; 3]> {
     all
 }
 
-/// The solved nucleus.
-fn nucleus_of(graph: &Graph) -> Option<NodeId> {
-    graph.of_type(&nucleus::NUCLEUS).next().map(|(id, _)| id)
-}
-
-fn own_setting(scene: &Scene, model: ResistanceModel) -> Setting {
-    let node = nucleus_of(&scene.graph).map(|id| scene.graph.node(id));
-    let most = |held: Option<&Held>, default: f64| match held {
-        Some(Held::Keyed(curve)) => curve.max_abs(),
-        Some(Held::Fixed(Value::Int(x))) => *x as f64,
-        Some(Held::Fixed(Value::Float(x))) => *x,
-        _ => default,
-    };
-    let number = |key: &Key<i64>, default: f64| most(node.and_then(|node| node.setting(key)), default);
-    // Those of the first frame are by `autoEvaluations` where none are given.
-    let first = match model {
-        ResistanceModel::Physical { evaluations } => evaluations,
-        ResistanceModel::Classic => 96.0,
-    };
-    Setting {
-        reading: match model {
-            ResistanceModel::Classic => Reading::Classic,
-            ResistanceModel::Physical { .. } => Reading::Physical,
-        },
-        substeps: number(&nucleus::SUB_STEPS, 3.0) as u32,
-        collision_iterations: number(&nucleus::MAX_COLLISION_ITERATIONS, 4.0) as u32,
-        evaluations: most(node.and_then(|node| node.setting(&nucleus::EVALUATIONS)), first),
-        resistance: 1.0,
-        tethers: false,
-    }
-}
-
 /// Whether no animation, wind or force adds energy. Conservative: false if in doubt.
 fn is_closed(scene: &Scene) -> bool {
     let blows =
@@ -414,49 +311,4 @@ fn is_closed(scene: &Scene) -> bool {
             || node.get(&n_base::REST_LENGTH_SCALE) != 1.0
     });
     !(moves || pushed || blows(&nucleus::WIND_SPEED) && blows(&nucleus::AIR_DENSITY))
-}
-
-/// Applies a setting to the nucleus.
-fn set_quality(graph: &mut Graph, setting: &Setting) {
-    let Some(id) = nucleus_of(graph) else { return };
-    let choice = Choice(match setting.reading {
-        Reading::Classic => 0,
-        Reading::Physical => 1,
-    });
-    let evaluations = match graph.node(id).setting(&nucleus::EVALUATIONS) {
-        Some(Held::Keyed(curve)) => scaled(curve, setting.evaluations / curve.max_abs(), 1.0),
-        _ => Held::Fixed(Value::Float(setting.evaluations)),
-    };
-    let int = |x: u32| Held::Fixed(Value::Int(x.into()));
-    put(graph, id, &nucleus::RESISTANCE_MODEL.row, Held::Fixed(Value::Choice(choice)));
-    put(graph, id, &nucleus::SUB_STEPS.row, int(setting.substeps));
-    put(graph, id, &nucleus::MAX_COLLISION_ITERATIONS.row, int(setting.collision_iterations));
-    put(graph, id, &nucleus::EVALUATIONS.row, evaluations);
-}
-
-fn scale_resistances(graph: &mut Graph, cloth: NodeId, factor: f64) {
-    for key in PLANE_RESISTANCES {
-        let held = match graph.node(cloth).setting(key) {
-            Some(Held::Keyed(curve)) => scaled(curve, factor, 0.0),
-            _ => Held::Fixed(Value::Float(graph.node(cloth).get(key) * factor)),
-        };
-        put(graph, cloth, &key.row, held);
-    }
-}
-
-/// A curve with all values multiplied by a factor, none below `least`.
-fn scaled(curve: &Curve, factor: f64, least: f64) -> Held {
-    let keys = curve.keys().iter();
-    let keys =
-        keys.map(|key| nucleus_graph::animation::Key { value: (key.value * factor).max(least), ..*key });
-    match Curve::new(keys.collect()) {
-        Ok(curve) => Held::Keyed(curve),
-        // Only absurd values are rejected; those keep the curve unchanged.
-        Err(_) => Held::Keyed(curve.clone()),
-    }
-}
-
-/// Sets an attribute. A rejected value leaves the attribute unchanged, so that the scene still compiles.
-fn put(graph: &mut Graph, node: NodeId, attribute: &'static Attribute, held: Held) {
-    let _ = graph.set(node, attribute, held);
 }

@@ -151,7 +151,13 @@ impl Trade {
         points.sort_by(|a, b| a.ms.total_cmp(&b.ms));
         mark_frontier(&mut points);
         let span = benchmark.program().time();
-        let reference = references.map(|both| Point::new(benchmark, &both.fine.run, &measure, None));
+        // Nothing measures the finer reference itself.
+        let reference = references.map(|both| Point {
+            errors: Vec::new(),
+            error: None,
+            limit: None,
+            ..Point::new(benchmark, &both.fine.run, &measure, None)
+        });
         Self {
             name: benchmark.name(),
             frames: [span.start, span.end],

@@ -3,7 +3,9 @@
 //! | Question                                                       | Module           |
 //! |----------------------------------------------------------------|------------------|
 //! | the attributes that are varied                                 | `setting.rs`     |
-//! | the scene, its facts before a run, and the scene at a setting  | `benchmark.rs`   |
+//! | the scene, and its facts before a run                          | `benchmark.rs`   |
+//! | the scene at a setting, and the edits that set its text        | `scene_at.rs`    |
+//! | which frames are compared                                      | `survey.rs`      |
 //! | which settings are run                                         | `plan.rs`        |
 //! | one run, frame by frame, and its trajectory                    | [`run`]          |
 //! | reference runs, predictability horizon                         | `reference.rs`   |
@@ -17,7 +19,9 @@ mod error;
 mod plan;
 mod reference;
 pub mod run;
+mod scene_at;
 mod setting;
+mod survey;
 pub mod sweep;
 
 pub use benchmark::{Benchmark, TradeError, object_positions};
@@ -26,4 +30,5 @@ pub use error::{Component, ErrorMeasure, Quantity, Request};
 pub use plan::SweepOptions;
 pub use reference::{ReferenceRun, References};
 pub use setting::{Reading, Setting};
+pub use survey::Survey;
 pub use sweep::{Elsewhere, Progress, RemoteRun, SweepControl, SweepResult, run_sweep};

@@ -166,7 +166,7 @@ pub fn run_setting<R: Real>(
 }
 
 /// Replaces `out` by the points of all cloth in metres.
-fn all_points<R: Real>(simulation: &Simulation<R>, out: &mut Vec<Vector3<f64>>) {
+pub(super) fn all_points<R: Real>(simulation: &Simulation<R>, out: &mut Vec<Vector3<f64>>) {
     out.clear();
     let state: &dyn StateView = simulation.state();
     for object in simulation.objects() {
