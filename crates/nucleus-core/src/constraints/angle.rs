@@ -134,19 +134,27 @@ impl<R: Real> AngleGroup<R> {
 /// The vectors of the edge and to the far sides of each hinge, in lanes.
 #[inline(always)]
 fn spans_of<R: Real, L: Lanes<R>, const N: usize>(angles: &[AngleGroup<R>], x: &[[L; 4]; N]) -> [[L; 3]; 3] {
-    let anchored = |vector: usize, axis: usize| L::of_groups(|k| angles[k].anchored[vector][axis]);
-    let half = L::splat(R::from_f64(0.5));
-    let far = |side: &[usize], axis: usize| match side {
-        [one] => x[*one][axis],
-        [one, other] => (x[*one][axis] + x[*other][axis]) * half,
-        _ => x[0][axis],
-    };
     let [near, other] = far_sides::<N>();
-    [
-        by_axis(|axis| anchored(0, axis) + (x[1][axis] - x[0][axis])),
-        by_axis(|axis| anchored(1, axis) + (far(near, axis) - x[0][axis])),
-        by_axis(|axis| anchored(2, axis) + (far(other, axis) - x[0][axis])),
-    ]
+    // A loop, because a closure that computes in lanes is not inlined.
+    let mut spans = [[L::splat(R::ZERO); 3]; 3];
+    for axis in 0..3 {
+        let ends = [x[1][axis], far_end(x, near, axis), far_end(x, other, axis)];
+        for vector in 0..3 {
+            let anchored = L::of_groups(|k| angles[k].anchored[vector][axis]);
+            spans[vector][axis] = anchored + (ends[vector] - x[0][axis]);
+        }
+    }
+    spans
+}
+
+/// A coordinate of the middle of a far side.
+#[inline(always)]
+fn far_end<R: Real, L: Lanes<R>, const N: usize>(x: &[[L; 4]; N], side: &[usize], axis: usize) -> L {
+    match side {
+        [one] => x[*one][axis],
+        [one, other] => (x[*one][axis] + x[*other][axis]) * L::splat(R::from_f64(0.5)),
+        _ => x[0][axis],
+    }
 }
 
 /// The vectors of a hinge's edge and to its far sides, from the positions of its points.

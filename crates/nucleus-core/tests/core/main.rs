@@ -13,6 +13,7 @@ mod features;
 mod fields;
 mod folds;
 mod free_points;
+mod inlined_kernels;
 mod invalid_input;
 mod invalid_particles;
 mod laws;
