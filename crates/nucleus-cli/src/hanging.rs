@@ -1,8 +1,8 @@
-//! Hints at cloth that hangs by pins and that its budget leaves stretched, before a run; the budget that `autoEvaluations`
+//! Hints at cloth that hangs by pins or is inflated and that its budget leaves stretched, before a run; the budget that `autoEvaluations`
 //! chose; and budgets beyond what single precision resolves.
 
-use nucleus_core::{FrameInput, ResistanceModel};
-use nucleus_graph::compile::budget::{Hanging, MAX_BUDGET, hanging};
+use nucleus_core::{COUNT_PERIOD, FrameInput, ResistanceModel};
+use nucleus_graph::compile::budget::{Hanging, Inflated, MAX_BUDGET, hanging};
 use nucleus_graph::compile::{ObjectKind, Program};
 
 use crate::figures;
@@ -15,13 +15,17 @@ const WANTED: f64 = 0.01;
 /// Hints at the cloths of a scene that its budget leaves stretched, one line each.
 pub fn hints(program: &Program) -> Vec<String> {
     let mut hints = Vec::new();
-    for (nucleus, input) in program.nuclei().iter().zip(program.first_inputs()) {
+    for (at, (nucleus, input)) in program.nuclei().iter().zip(program.first_inputs()).enumerate() {
         for (index, id) in nucleus.cloths().enumerate() {
             let own = |kind: &ObjectKind| matches!(kind, ObjectKind::Cloth(cloth) if cloth.0 == id);
             let name = program.objects().iter().find(|object| own(&object.kind)).map(|object| &object.name);
             let found =
                 hanging(index, nucleus.model().cloths(), &input).filter(|found| found.strain >= MIN_STRAIN);
             hints.extend(name.zip(found).map(|(name, found)| hint(&found, name)));
+            let inflated = Inflated::of(program, at, index, &input);
+            hints.extend(
+                name.zip(inflated).and_then(|(name, inflated)| inflated_hint(&inflated, &input, name)),
+            );
         }
     }
     hints
@@ -38,6 +42,22 @@ fn hint(found: &Hanging, name: &str) -> String {
         figures::number(*evaluations),
         figures::percent((100.0 * strain).round() / 100.0),
     )
+}
+
+/// `hint: ...` where the skin of inflated cloth is stretched visibly beyond its material.
+fn inflated_hint(inflated: &Inflated, input: &FrameInput, name: &str) -> Option<String> {
+    let ResistanceModel::Physical { evaluations } = input.resistance else { return None };
+    let strain = inflated.strain(COUNT_PERIOD / evaluations);
+    let needed = (COUNT_PERIOD / inflated.step(WANTED) / 10.0).ceil() * 10.0;
+    (strain >= MIN_STRAIN).then(|| {
+        format!(
+            "hint: `{name}` is inflated to {} kPa: {} `evaluations` leave its skin stretched by about {} more than its \
+             material; `evaluations: {needed}` would leave 1 %",
+            figures::number((inflated.pascals / 10.0).round() / 100.0),
+            figures::number(evaluations),
+            figures::percent((100.0 * strain).round() / 100.0),
+        )
+    })
 }
 
 /// The budgets that `autoEvaluations` chose, one line each.

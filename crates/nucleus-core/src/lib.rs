@@ -91,7 +91,7 @@ pub use nalgebra;
 pub use bytes::{Encode, Reader, RestoreError, add_checksum, verify_checksum};
 pub use constraints::link::fold::fold_link;
 pub use constraints::link::glue::{LOAD_OF_HALF, breaking_load};
-pub use constraints::pressure::PASCALS_PER_PRESSURE;
+pub use constraints::pressure::{BURST_STRETCH, PASCALS_PER_PRESSURE};
 pub use input::fields::{Field, FieldKind, Noise, Reach, Volume, VolumeAxis, VolumeShape};
 pub use input::frame::{
     BendSolver, Bending, Birth, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,

@@ -76,7 +76,7 @@ node_table! {
         LIFT_IN_SCENE_UNITS: bool = toggle("liftInSceneUnits", "liftInSceneUnits", false).solved("nucleus_graph::compile::frame").extension();
         /// Physical: evaluations of each constraint in 1/24 s. More evaluations only reduce the error. Where they are not given, `autoEvaluations` may raise them.
         EVALUATIONS: f64 = float("evaluations", "evaluations", 96.0).min(1.0).max(1e6).soft(24.0, 384.0).unit("per 1/24 s").solved("nucleus_core::schedule").extension();
-        /// Physical: where `evaluations` are not given, they are as many as leave cloth stretched by about 1 % at rest whatever its size, at least 96: from edge lengths, pins, gravity, mass and stiffness at the first frame. `nucleus info` says how many.
+        /// Physical: where `evaluations` are not given, they are as many as leave cloth stretched by about 1 % at rest whatever its size, at least 96: from edge lengths, pins, gravity, mass and stiffness at the first frame, and the largest pressure of the run. `nucleus info` says how many.
         AUTO_EVALUATIONS: bool = toggle("autoEvaluations", "autoEvaluations", true).solved("nucleus_graph::compile::budget").fixed().extension();
     }
     "Hidden" {

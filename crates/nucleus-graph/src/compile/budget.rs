@@ -4,7 +4,7 @@
 //! d between points of mass m that carries N times that mass at rest is therefore stretched by N g h² / d: a small mesh
 //! needs short steps. Where cloth hangs by P pins, each edge beside them carries a P-th of its mass; where the mass is
 //! uniform that is (points - P) / P points, and in proportion more where particles lie in it, as water in a bag. Elsewhere
-//! an edge carries at most half the cloth in a line, as over the edge of a table.
+//! an edge carries at most half the cloth in a line, as over the edge of a table. Inflated cloth is in `inflation.rs`.
 
 use nalgebra::Vector3;
 use nucleus_core::{COUNT_PERIOD, Cloth, FrameInput, PhysicalStiffness, PointId, ResistanceModel};
@@ -14,6 +14,7 @@ use crate::diagnostic::Findings;
 use crate::graph::NodeId;
 use crate::scene::document::Scene;
 
+pub use super::inflation::Inflated;
 use super::program::{NucleusProgram, Program};
 
 /// A cloth that hangs by pins.
@@ -53,16 +54,20 @@ pub fn hanging(index: usize, cloths: &[Cloth], input: &FrameInput) -> Option<Han
 }
 
 /// The evaluations in 1/24 s that leave a cloth stretched by about 1 % at rest; `None` where nothing stretches it.
-fn evaluations(index: usize, cloths: &[Cloth], input: &FrameInput) -> Option<f64> {
+fn evaluations(
+    index: usize,
+    cloths: &[Cloth],
+    input: &FrameInput,
+    inflated: Option<Inflated>,
+) -> Option<f64> {
     let (cloth, settings) = (cloths.get(index)?, input.cloths.get(index)?);
-    let (edge, gravity) = (mean_edge(cloth)?, input.gravity.norm());
-    if !cloth.lists.stretch || !settings.feels_gravity || gravity == 0.0 || settings.is_driven {
+    if !cloth.lists.stretch || settings.is_driven {
         return None;
     }
-    let (pins, across) = (pins(index, input), extent(cloth) / edge / 2.0);
+    let pins = pins(index, input);
     let held = if settings.tethers.is_none() { &pins[..] } else { &[] };
-    let load = (load_at_pins(cloth, held) * (1.0 + carried(index, cloths, input))).max(across);
-    let step = (WANTED * edge / (load * gravity)).sqrt();
+    let weight = step_under_weight(index, cloths, input, held);
+    let step = weight.into_iter().chain(inflated.map(|inflated| inflated.step(WANTED))).reduce(f64::min)?;
     let PhysicalStiffness { stretch, warp, weft, .. } = PhysicalStiffness::of(settings);
     let mass = cloth.point_masses().iter().sum::<f64>() / cloth.surface.positions.len() as f64;
     let lightest = mass / lightness(cloth, held).max(1.0);
@@ -70,25 +75,39 @@ fn evaluations(index: usize, cloths: &[Cloth], input: &FrameInput) -> Option<f64
     Some(COUNT_PERIOD / step.max(shortest))
 }
 
+/// The time step in seconds that leaves a cloth stretched by about 1 % by its weight; `None` without weight.
+fn step_under_weight(index: usize, cloths: &[Cloth], input: &FrameInput, held: &[PointId]) -> Option<f64> {
+    let (cloth, gravity) = (&cloths[index], input.gravity.norm());
+    if !input.cloths[index].feels_gravity || gravity == 0.0 {
+        return None;
+    }
+    let edge = mean_edge(cloth)?;
+    let across = extent(cloth) / edge / 2.0;
+    let load = (load_at_pins(cloth, held) * (1.0 + carried(index, cloths, input))).max(across);
+    Some((WANTED * edge / (load * gravity)).sqrt())
+}
+
 /// Raises the budget of each nucleus whose `evaluations` are not given to the next ten of what its cloths need.
-pub(super) fn choose(scene: &Scene, program: &mut Program, findings: &mut Findings) {
-    let graph = &scene.graph;
-    let needed = |(own, input): (&NucleusProgram, FrameInput)| {
+pub(super) fn choose(scene: &Scene, built: &mut Program, findings: &mut Findings) {
+    let (graph, program) = (&scene.graph, &*built);
+    let needed = |(at, (own, input)): (usize, (&NucleusProgram, FrameInput))| {
         let node = graph.node(own.node());
         let default = node.get(&nucleus::EVALUATIONS);
         let is_chosen = node.get(&nucleus::AUTO_EVALUATIONS)
             && !graph.is_given(own.node(), &nucleus::EVALUATIONS)
             && matches!(input.resistance, ResistanceModel::Physical { .. });
         let cloths = own.model().cloths();
-        let each = (0..cloths.len()).filter(|_| is_chosen).filter_map(|at| evaluations(at, cloths, &input));
+        let each = (0..cloths.len())
+            .filter(|_| is_chosen)
+            .filter_map(|index| evaluations(index, cloths, &input, Inflated::of(program, at, index, &input)));
         let most = each.fold(default, f64::max);
         (most > default).then(|| ((most / 10.0 - 1e-9).ceil() * 10.0).min(MAX_BUDGET))
     };
-    let budgets = program.nuclei().iter().zip(program.first_inputs()).map(needed).collect();
+    let budgets = program.nuclei().iter().zip(program.first_inputs()).enumerate().map(needed).collect();
     for node in program.nuclei().iter().map(NucleusProgram::node) {
         warn_if_given_twice(scene, node, findings);
     }
-    program.set_budgets(budgets);
+    built.set_budgets(budgets);
 }
 
 fn warn_if_given_twice(scene: &Scene, node: NodeId, findings: &mut Findings) {

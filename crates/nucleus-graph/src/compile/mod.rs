@@ -11,7 +11,7 @@
 //! | fields that objects exert                            | `force_fields.rs`                  |
 //! | settings that another setting switches off           | `contradictions.rs`, `dependencies.rs` |
 //! | nodes that nothing connects                          | `idle.rs`                          |
-//! | stretch that a budget leaves, `autoEvaluations`      | [`budget`]                         |
+//! | stretch that a budget leaves, `autoEvaluations`      | [`budget`], `inflation.rs`         |
 //! | particles                                            | `particles.rs`                     |
 //! | the directions of woven cloth                        | `weave.rs`                         |
 //! | a random perturbation of the start                   | `perturbation.rs`                  |
@@ -51,6 +51,7 @@ mod force_fields;
 mod frame;
 mod geometry;
 mod idle;
+mod inflation;
 mod initial_state;
 mod input_mesh;
 mod liquids;
