@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use nucleus_core::{BURST_STRETCH, Cloth, FrameInput, PhysicalStiffness, Pressure, ResistanceModel};
 
 use super::program::Program;
-use crate::scene::TimeSpan;
+use crate::scene::document::TimeSpan;
 
 /// Frames at which keyed pressure is looked at, at most.
 const SAMPLES: i64 = 1_000;

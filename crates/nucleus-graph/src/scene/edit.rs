@@ -108,7 +108,10 @@ fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>,
                 NewValue::Text(new) => new.clone(),
                 NewValue::Scaled { factor, least, default } => written((default * factor).max(*least)),
             };
-            changes.push(added(text, body, fields.last(), &edit.attribute, &new));
+            let (place, new) = added(text, body, fields.last(), &edit.attribute, &new);
+            // A node without attributes has no last one to write a comma after.
+            let is_second = fields.is_empty() && changes.iter().any(|(other, _)| *other == place);
+            changes.push((place, if is_second { format!(", {new}") } else { new }));
         }
     }
 }
