@@ -46,10 +46,10 @@ use neighbours::{CHUNK, Neighbours, chunk_range};
 use viscosity::Viscosity;
 use walls::{Corner, Material, Plane, Walls};
 
-/// Rate at which an excess of density from before a time step goes, in 1/s, at most.
-const MAX_RECOVERY_RATE: f64 = 10.0;
+/// Rate at which an excess of density from before a time step goes, in 1/s.
+const RECOVERY: f32 = 10.0;
 /// Largest share of it that goes in a time step.
-const MAX_RECOVERY: f64 = 0.5;
+const MAX_RECOVERY: f32 = 0.5;
 /// Distance that particles may move in a time step relative to each other, in rest distances.
 const MAX_ADVANCE: f64 = 0.4;
 /// The same by gravity alone from rest.
@@ -72,21 +72,11 @@ pub struct LiquidSolver {
     loads: Vec<Load>,
     /// Factors on viscosity and on surface tension, in the sorted order; empty where they are 1.
     factors: [Vec<f32>; 2],
-    /// Rate at which an excess of density from before a time step goes, in 1/s.
-    recovery: f64,
     /// Where lengths are taken from in this frame, in metres.
     origin: Vector3<f64>,
     density_error: f64,
     /// The births and deaths of its particles that the columns by particle follow.
     topology: u64,
-}
-
-/// The rate at which a liquid of so many particles loses an excess of density, in 1/s: as it spreads, its far side moves at
-/// its extent times the rate, which must not be faster than a fall by the extent.
-fn recovery_rate(particles: usize, settings: &Liquid, gravity: f64) -> f64 {
-    // A power of two, so that one particle more changes nothing.
-    let extent = settings.spacing * (particles.next_power_of_two() as f64).cbrt();
-    if gravity > 0.0 { MAX_RECOVERY_RATE.min((gravity / extent).sqrt()) } else { MAX_RECOVERY_RATE }
 }
 
 /// One time step of one liquid.
@@ -185,7 +175,6 @@ impl LiquidSolver {
         pool: &ThreadPool,
     ) {
         self.gather(scene, state, step, step.h);
-        self.recovery = recovery_rate(self.positions.len(), &step.settings, scene.frame.gravity.norm());
         self.find_walls(scene, state, step);
         self.neighbours.find(&self.positions, &self.walls, pool);
         self.pressure.clear();
@@ -288,7 +277,6 @@ impl LiquidSolver {
     fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
         let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, factors, .. } = self;
         let LiquidStep { settings, h, .. } = *step;
-        let recovery = (self.recovery * h).min(MAX_RECOVERY) as f32;
         let order = neighbours.grid.order();
         let by_particle = state.population_of(step.cloth).map_or([&[][..]; 2], Population::liquid_factors);
         for (factors, by_particle) in factors.iter_mut().zip(by_particle) {
@@ -311,6 +299,7 @@ impl LiquidSolver {
         }
         let tension = (settings.surface_tension * squared * per_metre) as f32;
         let pull = surface_tension::strength(tension) * (h * h) as f32;
+        let recovery = (RECOVERY * h as f32).min(MAX_RECOVERY);
         density.lambda.resize(order.len(), 0.0);
         loads.resize(order.len(), Load::default());
         let (lambda, loads) = (DisjointSlice::new(&mut density.lambda), DisjointSlice::new(loads));
