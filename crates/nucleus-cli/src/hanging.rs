@@ -1,5 +1,5 @@
-//! Hints at cloth that hangs by pins or is inflated and that its budget leaves stretched, before a run; the budget that `autoEvaluations`
-//! chose; and budgets beyond what single precision resolves.
+//! Hints at cloth that hangs by pins or is inflated and that its budget leaves stretched, before a run; the budget that
+//! `autoEvaluations` chose; and budgets beyond what single precision resolves.
 
 use nucleus_core::{COUNT_PERIOD, FrameInput, ResistanceModel};
 use nucleus_graph::compile::budget::{Hanging, Inflated, MAX_BUDGET, hanging};

@@ -79,7 +79,7 @@ fn a_sweep_writes_a_page_a_table_and_json_and_recommends_a_setting() {
     );
 }
 
-/// A sheet of 4 kg/m² that falls for 1.2 seconds, onto a ball.
+/// A sheet that falls for 1.2 seconds, onto a ball.
 const LATE: &str = r#"Scene(
     time: (start: 1, end: 48, fps: 24),
     nodes: {

@@ -7,9 +7,10 @@
 
 use std::f64::consts::PI;
 
-use nucleus_core::{BURST_STRETCH, Cloth, FrameInput, PhysicalStiffness, Pressure, ResistanceModel};
+use nucleus_core::{BURST_STRETCH, FrameInput, PhysicalStiffness, Pressure, ResistanceModel, Surface};
 
 use super::program::Program;
+use crate::mesh::{area, is_closed, volume};
 use crate::scene::document::TimeSpan;
 
 /// Frames at which keyed pressure is looked at, at most.
@@ -45,11 +46,14 @@ impl Inflated {
             let interval = program.interval(nucleus, [frame as f64 - 1.0, frame as f64], 1.0, false);
             interval.pressure(source.node)
         };
-        let supply = Supply::of(frames.map(at), every as f64 / program.time().fps, is_closed(cloth));
-        let radius = (area(cloth) / (4.0 * PI)).sqrt();
+        let Surface { positions, faces } = &cloth.surface;
+        let radius = (area(faces, positions) / (4.0 * PI)).sqrt();
+        let supply = Supply::of(frames.map(at), every as f64 / program.time().fps, is_closed(faces));
+        // Of the sphere that the skin can become.
+        let filled = volume(faces, positions).abs() / (4.0 / 3.0 * PI * radius.powi(3));
         let stiffness = PhysicalStiffness::of(settings);
-        let strain = supply.strain(cloth, radius, (stiffness.warp + stiffness.weft) / 2.0);
-        let pascals = supply.gauge(cloth, radius, strain);
+        let strain = supply.strain(filled, radius, (stiffness.warp + stiffness.weft) / 2.0);
+        let pascals = supply.gauge(filled, strain);
         let points = cloth.point_masses();
         let mass = points.iter().sum::<f64>() / points.len().max(1) as f64;
         let radius = radius * (1.0 + strain);
@@ -101,20 +105,18 @@ impl Supply {
         supply
     }
 
-    /// Gauge pressure in pascals on a skin of this radius at rest and of this strain.
-    fn gauge(&self, cloth: &Cloth, radius: f64, strain: f64) -> f64 {
-        let (start, growth) = (volume(cloth), (1.0 + strain).powi(3));
-        let full = start.max(4.0 / 3.0 * PI * radius.powi(3));
-        // What is pumped in first fills the skin.
-        let filled = self.start.max(self.most * start / full);
-        self.hand.max(self.bulk * (filled / growth - 1.0)).max(0.0)
+    /// Gauge pressure in pascals on a skin of this strain, whose mesh fills this share of its sphere at the start.
+    fn gauge(&self, filled: f64, strain: f64) -> f64 {
+        // What is pumped in first fills the sphere.
+        let air = self.start.max(self.most * filled.min(1.0));
+        self.hand.max(self.bulk * (air / (1.0 + strain).powi(3) - 1.0)).max(0.0)
     }
 
-    /// The strain at which the tension of a skin of this stiffness in N/m holds the pressure, up to bursting.
-    fn strain(&self, cloth: &Cloth, radius: f64, stiffness: f64) -> f64 {
-        let is_held = |strain: f64| {
-            self.gauge(cloth, radius, strain) * radius * (1.0 + strain) / 2.0 <= stiffness * strain
-        };
+    /// The strain at which the tension of a skin of this radius in metres and this stiffness in N/m holds the pressure, up to
+    /// bursting.
+    fn strain(&self, filled: f64, radius: f64, stiffness: f64) -> f64 {
+        let is_held =
+            |strain: f64| self.gauge(filled, strain) * radius * (1.0 + strain) / 2.0 <= stiffness * strain;
         let (mut low, mut high) = (0.0, BURST_STRETCH - 1.0);
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(low, high);
@@ -126,28 +128,4 @@ impl Supply {
         }
         high
     }
-}
-
-/// Whether every edge of a mesh has two faces.
-fn is_closed(cloth: &Cloth) -> bool {
-    let faces = cloth.surface.faces.iter();
-    let sides = faces.flat_map(|face| face.iter().zip(face.iter().cycle().skip(1)));
-    let mut edges: Vec<[u32; 2]> = sides.map(|(&a, &b)| [a.min(b), a.max(b)]).collect();
-    edges.sort_unstable();
-    !edges.is_empty() && edges.chunk_by(|a, b| a == b).all(|faces| faces.len() == 2)
-}
-
-/// Area in m².
-fn area(cloth: &Cloth) -> f64 {
-    let place = |point: u32| cloth.surface.positions[point as usize];
-    let twice = |[a, b, c]: [u32; 3]| (place(b) - place(a)).cross(&(place(c) - place(a))).norm();
-    cloth.surface.faces.triangles().map(twice).sum::<f64>() / 2.0
-}
-
-/// Volume in m³, whichever way the faces point.
-fn volume(cloth: &Cloth) -> f64 {
-    let Some(&origin) = cloth.surface.positions.first() else { return 0.0 };
-    let place = |point: u32| cloth.surface.positions[point as usize] - origin;
-    let six = |[a, b, c]: [u32; 3]| place(a).dot(&place(b).cross(&place(c)));
-    (cloth.surface.faces.triangles().map(six).sum::<f64>() / 6.0).abs()
 }

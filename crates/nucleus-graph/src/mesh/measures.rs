@@ -1,4 +1,4 @@
-//! Measures of meshes: area, bounding box, open edges.
+//! Measures of meshes: area, volume, bounding box, open edges.
 
 use nalgebra::Vector3;
 use nucleus_core::Faces;
@@ -12,6 +12,15 @@ pub(crate) fn doubled_area(points: &[Vector3<f64>], corners: [u32; 3]) -> Vector
 /// The area of some faces in the square of the unit of length.
 pub(crate) fn area(faces: &Faces, points: &[Vector3<f64>]) -> f64 {
     faces.triangles().map(|corners| doubled_area(points, corners).norm() / 2.0).sum()
+}
+
+/// The volume inside some faces in the cube of the unit of length; negative where they face inwards.
+pub(crate) fn volume(faces: &Faces, points: &[Vector3<f64>]) -> f64 {
+    // Relative to a point of the mesh, so that one far from the origin loses nothing.
+    let origin = points.first().copied().unwrap_or_default();
+    let sixfold =
+        |corners: [u32; 3]| (points[corners[0] as usize] - origin).dot(&doubled_area(points, corners));
+    faces.triangles().map(sixfold).sum::<f64>() / 6.0
 }
 
 /// The lower and the upper corner of the bounding box; the origin without points.
@@ -67,5 +76,19 @@ mod tests {
         faces.push(&[0, 1, 2, 3]);
         assert_eq!(area(&faces, &points), 6.0);
         assert_eq!(bounding_box(&points), [points[0], points[2]]);
+    }
+
+    #[test]
+    fn a_tetrahedron_has_its_volume_anywhere_and_a_negative_one_inside_out() {
+        let at = |place: f64| {
+            let corners = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]];
+            corners.map(|corner| Vector3::from(corner) + Vector3::repeat(place))
+        };
+        let mut faces = Faces::default();
+        [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].iter().for_each(|face| faces.push(face));
+        assert_eq!([volume(&faces, &at(0.0)), volume(&faces, &at(-64.0))], [4.0; 2]);
+        let mut inside_out = Faces::default();
+        [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]].iter().for_each(|face| inside_out.push(face));
+        assert_eq!(volume(&inside_out, &at(8.0)), -4.0);
     }
 }

@@ -6,7 +6,7 @@
 //! | how PLY, glTF and USD files are read             | [`MeshFile`]                |
 //! | texture coordinates                              | [`read_obj_uvs`], [`poly_plane_uvs`] |
 //! | groups of faces                                  | [`read_obj_groups`]         |
-//! | area, bounding box, open edges                   | `measures.rs`               |
+//! | area, volume, bounding box, open edges           | `measures.rs`               |
 //! | which faces are dropped as degenerate            | [`drop_degenerate_faces`]   |
 //! | the size of a primitive, before it is made       | [`Primitive::size`]         |
 //! | Maya's point order of plane, cube, sphere and cylinder | [`poly_plane`], [`poly_cube`], [`poly_sphere`], [`poly_cylinder`] |
@@ -23,7 +23,7 @@ mod primitive;
 
 pub use degenerate::drop_degenerate_faces;
 pub use file::{FileMesh, Frames, MeshFile, MeshFileError, MeshFormat};
-pub(crate) use measures::{area, bounding_box, doubled_area, is_closed, is_open, sides};
+pub(crate) use measures::{area, bounding_box, doubled_area, is_closed, is_open, sides, volume};
 pub use obj::{CornerUvs, ObjError, ObjFault, read_obj, read_obj_corner_uvs, read_obj_groups, read_obj_uvs};
 pub use primitive::{
     Primitive, PrimitiveError, poly_cube, poly_cylinder, poly_plane, poly_plane_uvs, poly_sphere,

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::text::{recommendation, request_name};
+use super::text::{recommendation, wish_name};
 use crate::trade::{Choice, Point, Quantity, Trade, Wish};
 
 /// The document; the fields of the trade follow.
@@ -11,7 +11,7 @@ use crate::trade::{Choice, Point, Quantity, Trade, Wish};
 struct Document<'a> {
     /// The name of the scene.
     scene: &'a str,
-    wanted: Wanted,
+    wanted: Wanted<'a>,
     recommendation: Recommendation<'a>,
     #[serde(flatten)]
     trade: &'a Trade,
@@ -19,15 +19,15 @@ struct Document<'a> {
 
 /// What was wanted.
 #[derive(Serialize)]
-struct Wanted {
+struct Wanted<'a> {
     /// In words.
     text: String,
     /// An error of every quantity without a bound of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<f64>,
     /// Errors of single quantities.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    bounds: Vec<(Quantity, f64)>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    bounds: &'a [(Quantity, f64)],
     /// Milliseconds a frame.
     #[serde(skip_serializing_if = "Option::is_none")]
     ms: Option<f64>,
@@ -48,18 +48,11 @@ struct Recommendation<'a> {
 /// A trade with the recommendation for `wish`, as JSON; `scene` is the name of the scene.
 pub fn json(trade: &Trade, scene: &str, wish: &Wish) -> Value {
     let choice = wish.choose(trade);
-    let wanted = match wish {
-        Wish::Time(ms) => {
-            let text = format!("a time of {ms} ms");
-            Wanted { text, error: None, bounds: Vec::new(), ms: Some(*ms) }
-        }
-        Wish::Error(request) => Wanted {
-            text: request_name(request),
-            error: request.every,
-            bounds: request.bounds.clone(),
-            ms: None,
-        },
+    let (error, bounds, ms) = match wish {
+        Wish::Time(ms) => (None, &[][..], Some(*ms)),
+        Wish::Error(request) => (request.every, &request.bounds[..], None),
     };
+    let wanted = Wanted { text: wish_name(wish), error, bounds, ms };
     let unresolved = match wish {
         Wish::Time(_) => Vec::new(),
         Wish::Error(request) => request.unresolved(&trade.measure).map(|(quantity, _)| quantity).collect(),

@@ -53,7 +53,7 @@ pub(super) fn errors(point: &Point) -> String {
 }
 
 /// `an error of 1 %`, `stretch of 3 %`, `a time of 40 ms`.
-fn wish_name(wish: &Wish) -> String {
+pub(super) fn wish_name(wish: &Wish) -> String {
     match wish {
         Wish::Time(ms) => format!("a time of {} ms", figure(*ms)),
         Wish::Error(request) => request_name(request),

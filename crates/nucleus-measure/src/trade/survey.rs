@@ -81,19 +81,11 @@ impl Survey {
 
 #[cfg(test)]
 mod tests {
+    use super::super::curve::tests::point;
     use super::*;
-    use crate::trade::Reading;
 
     fn survey(strains: Vec<f64>) -> Survey {
-        let setting = Setting {
-            reading: Reading::Physical,
-            substeps: 3,
-            collision_iterations: 4,
-            evaluations: 96.0,
-            resistance: 1.0,
-            tethers: false,
-        };
-        Survey { setting, asked: strains.len(), strains }
+        Survey { setting: point(96.0, 0.0).setting, asked: strains.len(), strains }
     }
 
     #[test]
