@@ -1,9 +1,10 @@
 //! Atomic files: written to a temporary file in the same folder, then renamed over the destination.
 //!
+//! A destination that is a symbolic link is followed: the file that it names is replaced, and the link stays.
 //! A reader of the destination sees the old file or the complete new one. The temporary file is removed when the
 //! writer fails. A process that is killed leaves it behind, as `<name>.<random>.part`.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -14,26 +15,44 @@ use tempfile::{Builder, NamedTempFile};
 pub struct AtomicFile {
     temporary: NamedTempFile,
     destination: PathBuf,
+    /// The destination with its symbolic links followed.
+    target: PathBuf,
+}
+
+/// Symbolic links that are followed from one path; the limit of Linux.
+const MAX_LINKS: usize = 40;
+
+/// The path of the file that `path` names: symbolic links at its end are followed, also to a file that does not exist.
+pub(crate) fn follow_links(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        // Any path that is no link, or does not exist, is an error here.
+        let Ok(target) = fs::read_link(&path) else { break };
+        // An absolute target replaces the folder.
+        path = path.parent().unwrap_or(Path::new("")).join(target);
+    }
+    path
 }
 
 impl AtomicFile {
-    /// Creates the temporary file beside the destination, with the permissions of any new file.
+    /// Creates the temporary file beside the file that the destination names, with the permissions of any new file.
     ///
     /// # Errors
     /// When the path names no file, or its folder cannot be written.
     pub fn create(destination: impl Into<PathBuf>) -> io::Result<Self> {
         let destination = destination.into();
+        let target = follow_links(&destination);
         let missing_name = || io::Error::new(io::ErrorKind::InvalidInput, "the path names no file");
-        let mut prefix = destination.file_name().ok_or_else(missing_name)?.to_owned();
+        let mut prefix = target.file_name().ok_or_else(missing_name)?.to_owned();
         prefix.push(".");
-        let folder = destination.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
         let mut builder = Builder::new();
         builder.prefix(&prefix).suffix(".part");
         // The default of `tempfile`, readable by the owner alone, would outlive the rename.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let temporary = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
-        Ok(Self { temporary, destination })
+        Ok(Self { temporary, destination, target })
     }
 
     /// The path of the complete file.
@@ -59,7 +78,7 @@ impl AtomicFile {
     /// # Errors
     /// When the destination cannot be replaced; it is then as before.
     pub fn commit(self) -> io::Result<()> {
-        self.temporary.persist(self.destination).map(drop).map_err(|failed| failed.error)
+        self.temporary.persist(self.target).map(drop).map_err(|failed| failed.error)
     }
 }
 
@@ -92,8 +111,6 @@ pub fn write(destination: &Path, bytes: &[u8]) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     #[test]
@@ -128,6 +145,25 @@ mod tests {
         assert!(taken.join("inside").is_dir());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
         assert_eq!(write(Path::new("/"), b"new").unwrap_err().kind(), io::ErrorKind::InvalidInput);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_target_of_a_link_is_replaced_and_the_link_stays() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let [target, link, second] = ["far/a.gif", "link", "second"].map(|name| folder.path().join(name));
+        fs::create_dir(folder.path().join("far")).unwrap();
+        symlink("far/a.gif", &link).unwrap();
+        symlink(&link, &second).unwrap();
+        for (path, bytes) in [(&link, b"new"), (&second, b"two")] {
+            // At first the target does not exist.
+            write(path, bytes).unwrap();
+            assert_eq!(fs::read(&target).unwrap(), bytes);
+            assert!(path.is_symlink() && !target.is_symlink());
+        }
+        symlink("round", folder.path().join("round")).unwrap();
+        assert!(write(&folder.path().join("round/a"), b"new").is_err());
     }
 
     #[cfg(unix)]

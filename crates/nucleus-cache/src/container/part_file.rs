@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use mcap::MAGIC;
 use mcap::records::{Record, op};
 
+use crate::atomic_file::follow_links;
 use crate::error::RecordError;
 use crate::messages::metadata::PROFILE;
 
@@ -25,7 +26,7 @@ pub(crate) struct PartPaths {
     final_path: PathBuf,
 }
 
-/// Creates the temporary file beside `path`. With `replace` it may overwrite an older cache, and the partial cache of a
+/// Creates the temporary file beside the file that `path` names. With `replace` it may overwrite an older cache, and the partial cache of a
 /// killed run.
 pub(crate) fn create(path: &Path, replace: bool) -> Result<PartFile, RecordError> {
     check_existing(path, replace)?;
@@ -36,19 +37,18 @@ pub(crate) fn create(path: &Path, replace: bool) -> Result<PartFile, RecordError
         return Err(RecordError::Unfinished { path: partial });
     }
     file.set_len(0).map_err(|source| failed(path, source))?;
-    Ok(PartFile { file, paths: PartPaths { partial, final_path: path.to_owned() } })
+    Ok(PartFile { file, paths: PartPaths { partial, final_path: follow_links(path) } })
 }
 
 /// Creates the temporary file of a resumed run, beside the partial cache. With `replace` it may overwrite an older
 /// cache.
 pub(crate) fn create_for_resume(path: &Path, replace: bool) -> Result<PartFile, RecordError> {
     check_existing(path, replace)?;
-    let mut partial = path.file_name().unwrap_or_default().to_owned();
-    partial.push(".resuming");
-    let partial = path.with_file_name(partial);
+    let final_path = follow_links(path);
+    let partial = with_end(&final_path, ".resuming");
     let file = open(&partial, path)?;
     file.set_len(0).map_err(|source| failed(path, source))?;
-    Ok(PartFile { file, paths: PartPaths { partial, final_path: path.to_owned() } })
+    Ok(PartFile { file, paths: PartPaths { partial, final_path } })
 }
 
 fn failed(path: &Path, source: io::Error) -> RecordError {
@@ -89,10 +89,15 @@ fn check_existing(path: &Path, replace: bool) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Path of a partial cache: the final path with `.part` appended.
+/// Path of a partial cache: that of the file that `path` names, with symbolic links followed and `.part` appended.
 pub fn part_path(path: &Path) -> PathBuf {
+    with_end(&follow_links(path), ".part")
+}
+
+/// A path with text appended to its name.
+fn with_end(path: &Path, end: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
+    name.push(end);
     path.with_file_name(name)
 }
 

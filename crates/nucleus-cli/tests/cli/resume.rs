@@ -45,6 +45,30 @@ fn a_cache_that_is_cut_off_anywhere_resumes_to_the_same_bytes() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_link_stays_and_the_cache_that_it_names_is_replaced() {
+    let folder = folder();
+    let whole = whole(folder.path());
+    fs::create_dir(folder.path().join("far")).unwrap();
+    let target = folder.path().join("far/real.mcap");
+    let link = folder.path().join("x.mcap");
+    std::os::unix::fs::symlink("far/real.mcap", &link).unwrap();
+    let record =
+        ["run", "drape.ron", "--checkpoint", "4", "-o", "x.mcap", "--record", "frames,contacts,strain"];
+    for force in [&[][..], &["--force"]] {
+        let output = nucleus(folder.path(), &[&record[..], force].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(link.is_symlink() && fs::read(&target).unwrap() == whole);
+    }
+    // The unfinished cache of a killed run lies beside the file, not beside the link.
+    fs::write(folder.path().join("far/real.mcap.part"), &whole[..whole.len() / 2]).unwrap();
+    assert!(resumed(folder.path(), &[]) == whole);
+    assert!(resumed(folder.path(), &["--at", "5"]) == whole);
+    assert!(link.is_symlink() && fs::read(&target).unwrap() == whole);
+    assert_eq!(fs::read_dir(folder.path().join("far")).unwrap().count(), 1);
+}
+
 #[test]
 fn a_damaged_checkpoint_or_frame_is_solved_again() {
     let folder = folder();
