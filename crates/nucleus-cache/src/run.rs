@@ -68,6 +68,8 @@ pub struct RunInfo {
     pub units_per_metre: f64,
     /// Which states are recorded.
     pub detail: Detail,
+    /// Frames from one solved frame to the next, counted from the start frame; the last frame is solved too.
+    pub interval: u32,
     /// Whether velocities are recorded, in scene units per second. Doubles the size.
     pub velocities: bool,
     /// Whether the contact state of each cloth point is recorded.
@@ -127,6 +129,7 @@ impl Default for RunInfo {
             frames_per_second: 24.0,
             units_per_metre: 1.0,
             detail: Detail::Frames,
+            interval: 1,
             velocities: false,
             contacts: false,
             strain: false,
@@ -159,6 +162,9 @@ impl RunInfo {
         if self.detail == Detail::Every(0) {
             return Some("every 0th frame cannot be recorded".to_owned());
         }
+        if self.interval == 0 {
+            return Some("every 0th frame cannot be solved".to_owned());
+        }
         positive("frames per second", self.frames_per_second)
             .or_else(|| positive("units per metre", self.units_per_metre))
             .or_else(backwards)
@@ -173,6 +179,13 @@ impl RunInfo {
         let between = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share);
         let Plane { origin, normal } = after;
         Some(Plane { origin: between(before.origin, origin), normal: between(before.normal, normal) })
+    }
+
+    /// Whether the run solves `frame` and records its end.
+    pub(crate) fn expects(&self, frame: i32) -> bool {
+        [self.detail, Detail::Every(self.interval)]
+            .iter()
+            .all(|detail| detail.includes(frame, self.start, self.end))
     }
 
     /// Seconds from the start frame to the end of `substep` of `substeps` in `frame`.

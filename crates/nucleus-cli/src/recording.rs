@@ -108,6 +108,7 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
         start,
         end,
         frames_per_second: program.time().fps,
+        interval: interval(program)?,
         units_per_metre: units,
         ground: program.first_input().plane.map(in_scene_units),
         ground_motion,
@@ -200,6 +201,12 @@ impl Write for Hash {
         self.0 = self.0.bytes(text.as_bytes());
         Ok(())
     }
+}
+
+/// Frames from one solved frame of a program to the next.
+pub fn interval(program: &Program) -> Result<u32> {
+    let frames = program.whole_frames();
+    u32::try_from(frames).with_context(|| format!("`every: {frames}` is out of range"))
 }
 
 /// First and last frame of a program.

@@ -12,6 +12,7 @@ use nucleus_core::{
 use crate::audit::{Audit, AuditScope, Audited, Closeness, GroundPlanes, collision_rules};
 use crate::checks::FrameReport;
 use crate::compile::{Object, Program};
+use crate::scene::TimeSpan;
 
 use combined::{CombinedObserver, CombinedState, combined_report, with_evaluation};
 use nucleus_run::{NucleusRun, SolverCall};
@@ -199,10 +200,11 @@ impl<R: Real> Simulation<R> {
         self.frame
     }
 
-    /// The frame after the next [`advance`](Self::advance). The last frame of the scene is always one of them.
+    /// The frame after the next [`advance`](Self::advance). Solved frames are counted from the start, also in a run that is
+    /// continued beyond an earlier last frame. The last frame of the scene is always one of them.
     pub fn next_frame(&self) -> i64 {
-        let next = self.frame + (self.program.every() as i64).max(1);
-        let end = self.program.time().end;
+        let (every, TimeSpan { start, end, .. }) = (self.program.whole_frames(), self.program.time());
+        let next = start + ((self.frame - start).div_euclid(every) + 1) * every;
         if self.frame < end { next.min(end) } else { next }
     }
 

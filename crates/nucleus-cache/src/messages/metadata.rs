@@ -31,12 +31,13 @@ const RADIUS: &str = "radius of ";
 /// Prefix of the key for threshold and radius scale of the surface of an object; the object's name follows.
 const SURFACE: &str = "surface of ";
 const CHECKPOINT: &str = "checkpoint";
+const INTERVAL: &str = "interval";
 const PACKING: &str = "packing";
 const SMALL: &str = "small";
 /// Key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
 /// Keys that the format defines, whether or not a run has them.
-const RESERVED: [&str; 17] = [
+const RESERVED: [&str; 18] = [
     "format",
     "start",
     "end",
@@ -53,6 +54,7 @@ const RESERVED: [&str; 17] = [
     GROUND,
     GROUND_MOTION,
     CHECKPOINT,
+    INTERVAL,
     PACKING,
 ];
 
@@ -104,6 +106,9 @@ impl RunInfo {
         }));
         if self.checkpoint > 0 {
             run.insert(CHECKPOINT.to_owned(), self.checkpoint.to_string());
+        }
+        if self.interval > 1 {
+            run.insert(INTERVAL.to_owned(), self.interval.to_string());
         }
         if self.packing == Packing::Small {
             run.insert(PACKING.to_owned(), SMALL.to_owned());
@@ -165,6 +170,7 @@ impl RunInfo {
             frames_per_second: run.parse("fps")?,
             units_per_metre: run.parse("units_per_metre")?,
             detail: run.detail()?,
+            interval: if run.0.contains_key(INTERVAL) { run.parse(INTERVAL)? } else { 1 },
             velocities: run.parse("velocities")?,
             contacts: run.flag(CONTACTS.topic),
             strain: run.flag(STRAIN.topic),
@@ -339,7 +345,7 @@ mod tests {
             ..RunInfo::default()
         };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
-            let run = RunInfo { detail, checkpoint: 24, packing: Packing::Small, ..run.clone() };
+            let run = RunInfo { detail, interval: 3, checkpoint: 24, packing: Packing::Small, ..run.clone() };
             assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
         }
     }

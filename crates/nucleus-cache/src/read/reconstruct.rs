@@ -217,10 +217,12 @@ fn of_stamps(stamps: &[Stamp], known: RunInfo) -> Option<RunInfo> {
     let start = first.frame.saturating_sub((first.time * frames_per_second).round() as i32);
     let frames: BTreeSet<i32> = ends().map(|stamp| stamp.frame).collect();
     let step = frames.iter().zip(frames.iter().skip(1)).map(|(one, next)| next - one).min().unwrap_or(1);
-    let detail = match stamps.iter().any(|stamp| 0 < stamp.substep && stamp.substep < stamp.substeps) {
-        true => Detail::Substeps,
-        false if step > 1 => Detail::Every(step as u32),
-        false => Detail::Frames,
-    };
-    Some(RunInfo { start, end: last.frame, frames_per_second, detail, ..known })
+    let step = step.max(1) as u32;
+    let (detail, interval) =
+        match stamps.iter().any(|stamp| 0 < stamp.substep && stamp.substep < stamp.substeps) {
+            true => (Detail::Substeps, step),
+            false if step > 1 => (Detail::Every(step), 1),
+            false => (Detail::Frames, 1),
+        };
+    Some(RunInfo { start, end: last.frame, frames_per_second, detail, interval, ..known })
 }

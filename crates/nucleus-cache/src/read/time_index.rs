@@ -45,10 +45,9 @@ pub(crate) fn list(run: &RunInfo, file_index: &FileIndex, channels: &[u16]) -> V
     time_samples
 }
 
-/// Frames up to the last recorded one that have no sample.
+/// Frames up to the last recorded one that the run records and that have no sample.
 pub(crate) fn missing(run: &RunInfo, time_samples: &[TimeSample]) -> Vec<i32> {
     let frames: BTreeSet<i32> = time_samples.iter().map(|sample| sample.frame).collect();
     let last = frames.last().copied().unwrap_or(run.start).min(run.end);
-    let expected = (run.start..=last).filter(|&frame| run.detail.includes(frame, run.start, run.end));
-    expected.filter(|frame| !frames.contains(frame)).collect()
+    (run.start..=last).filter(|&frame| run.expects(frame) && !frames.contains(&frame)).collect()
 }

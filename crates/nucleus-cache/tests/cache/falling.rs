@@ -113,9 +113,17 @@ pub fn objects() -> Vec<(Source, ObjectInfo)> {
 
 /// Records the initial state and the frames up to `last`, with all due checkpoints; the caller finishes the file.
 pub fn record<W: Write + Seek>(recorder: &mut Recorder<W>, last: i32) -> Result<(), RecordError> {
+    record_frames(recorder, START + 1..=last)
+}
+
+/// The same for these frames only.
+pub fn record_frames<W: Write + Seek>(
+    recorder: &mut Recorder<W>,
+    frames: impl IntoIterator<Item = i32>,
+) -> Result<(), RecordError> {
     recorder.record_start(&Falling::INITIAL)?;
     checkpoint(recorder, START)?;
-    for frame in START + 1..=last {
+    for frame in frames {
         let mut observer = recorder.frame(frame)?;
         for substep in 1..=SUBSTEPS {
             observer.substep(SubstepIndex { substep, substeps: SUBSTEPS }, &Falling { frame, substep });

@@ -6,7 +6,7 @@ use nucleus_cache::{Detail, Playback, Recorder, RunInfo};
 
 use nucleus_core::ContactState;
 
-use crate::falling::{self, END, Falling, SHOVE, START, SUBSTEPS};
+use crate::falling::{self, END, Falling, SHOVE, START, SUBSTEPS, Shared};
 
 fn open(run: &RunInfo) -> Playback<Cursor<Vec<u8>>> {
     Playback::read(Cursor::new(falling::whole_run(run).0)).unwrap()
@@ -92,7 +92,7 @@ fn a_collider_is_recorded_only_when_it_moves() {
 
 #[test]
 fn a_run_of_colliders_alone_has_every_frame_though_nothing_moves_in_most() {
-    let (file, run) = (falling::Shared::default(), falling::run_info());
+    let (file, run) = (Shared::default(), falling::run_info());
     let colliders = falling::objects().split_off(1);
     let mut recorder = Recorder::to_writer(file.clone(), &run, colliders).unwrap();
     falling::record(&mut recorder, run.end).unwrap();
@@ -173,5 +173,22 @@ fn every_nth_frame_and_the_last_are_recorded_with_all_motion_between_them() {
             );
         }
         assert_eq!(cache.reports().unwrap().len() as i32, END - START, "reports are of every frame");
+    }
+}
+
+#[test]
+fn frames_that_a_run_does_not_solve_are_not_missing() {
+    for detail in [Detail::Frames, Detail::Substeps, Detail::Every(3)] {
+        let run = RunInfo { detail, interval: 2, ..falling::run_info() };
+        let file = Shared::default();
+        let mut recorder = Recorder::to_writer(file.clone(), &run, falling::objects()).unwrap();
+        falling::record_frames(
+            &mut recorder,
+            (START + 1..=END).filter(|k| (k - START) % 2 == 0 || *k == END),
+        )
+        .unwrap();
+        recorder.finish().unwrap();
+        let mut cache = Playback::read(Cursor::new(file.contents())).unwrap();
+        assert!(cache.verify().unwrap().is_intact(), "{detail:?}: {}", cache.corruption());
     }
 }

@@ -116,8 +116,12 @@ impl Resume {
             "a position or velocity is not finite from frame {} on: give an earlier frame with `--at`",
             run.not_finite().unwrap_or_default()
         );
+        // A changed scene may solve other frames from here on: only those of both are sure to be recorded.
+        let interval = recording::interval(&program)?;
+        let interval = least_common_multiple(interval, old.cache.run().interval);
         let info = RunInfo {
             end,
+            interval,
             scene_path: scene_path.display().to_string(),
             scene_text: text,
             extra: recording::facts_of(old.cache.run(), self.scene.is_some().then_some(&program)),
@@ -190,4 +194,13 @@ impl Resume {
             "{name} is complete: its last frame is {last}; `--to` continues beyond it, `--at` solves the frames after one again\n"
         ))
     }
+}
+
+/// The least common multiple of two numbers above zero, or the first of them if it is too large.
+fn least_common_multiple(a: u32, b: u32) -> u32 {
+    let (mut x, mut y) = (a, b);
+    while y > 0 {
+        (x, y) = (y, x % y);
+    }
+    (a / x.max(1)).checked_mul(b).unwrap_or(a)
 }

@@ -70,6 +70,31 @@ fn a_link_stays_and_the_cache_that_it_names_is_replaced() {
 }
 
 #[test]
+fn frames_that_a_scene_does_not_solve_are_not_missing() {
+    let folder = folder();
+    scene(folder.path(), 12, "");
+    let path = folder.path().join("drape.ron");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replacen("fps: 24", "fps: 24, every: 2", 1)).unwrap();
+    let said = |arguments: &[&str]| {
+        let output = nucleus(folder.path(), arguments);
+        (output.status.code(), stdout(&output) + &stderr(&output))
+    };
+    for record in ["frames", "substeps", "every:3"] {
+        for (frames, more) in
+            [("1..6", &["resume", "x.mcap", "--to", "11"][..]), ("1..11", &["info", "x.mcap"])]
+        {
+            let run = ["run", "drape.ron", "-o", "x.mcap", "--force", "--record", record, "--frames", frames];
+            assert_eq!(said(&run).0, Some(0));
+            assert_eq!(said(more).0, Some(0), "{record}: {}", said(more).1);
+            let info = said(&["info", "x.mcap", "--verify"]);
+            assert!(info.0 == Some(0) && !info.1.contains("missing"), "{record}: {}", info.1);
+            assert_eq!(said(&["recover", "x.mcap", "-o", "y.mcap", "--force"]).0, Some(0), "{record}");
+        }
+    }
+}
+
+#[test]
 fn a_damaged_checkpoint_or_frame_is_solved_again() {
     let folder = folder();
     let whole = whole(folder.path());

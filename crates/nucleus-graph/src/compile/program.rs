@@ -170,6 +170,11 @@ impl Program {
         self.data.every
     }
 
+    /// Frames from one solved frame to the next: 1 where the graph is evaluated within frames.
+    pub fn whole_frames(&self) -> i64 {
+        (self.data.every as i64).max(1)
+    }
+
     /// The record options of the scene.
     pub fn record(&self) -> Record {
         self.data.record
