@@ -90,6 +90,21 @@ pub enum ExportError {
         /// The format.
         format: &'static str,
     },
+    /// A frame whose time the format cannot state.
+    #[error(
+        "frame {frame} is beyond {largest}, the largest that {format} can state at {frames_per_second} frames per second; \
+         export frames from -{largest} to {largest}, or write usda"
+    )]
+    FrameTooLarge {
+        /// The first such frame.
+        frame: i32,
+        /// The largest frame, which is also that of the largest negative number.
+        largest: i32,
+        /// Frames per second of the run.
+        frames_per_second: f64,
+        /// The format.
+        format: &'static str,
+    },
     /// A quantity exceeds the limit of the format.
     #[error("{quantity} is more than {format} can hold; export fewer frames, or write usda")]
     TooLarge {

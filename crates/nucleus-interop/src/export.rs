@@ -148,6 +148,9 @@ pub fn export<R: Read + Seek>(
         return Err(ExportError::NoSurface { format: request.format.name() });
     }
     let mut clip = Clip::of(cache, &request.selection)?;
+    if matches!(request.format, Format::Mc | Format::Mcx) {
+        ncache::require_times(&clip)?;
+    }
     let mut output = Output::new(request.force);
     let out = &request.out;
     match (request.format.is_one_file(), out.parent()) {

@@ -23,6 +23,22 @@ pub(crate) enum Width {
     Bits64,
 }
 
+/// Checks that the times of all samples can be stated: ticks are 32-bit numbers.
+///
+/// # Errors
+/// When a sample lies beyond the largest or before the smallest frame.
+pub(crate) fn require_times<R: Read + Seek>(clip: &Clip<R>) -> Result<(), ExportError> {
+    let largest = i32::MAX / ticks_per_frame(clip.fps());
+    let outside = clip.samples().iter().find(|sample| sample.frame_time.abs() > f64::from(largest));
+    match outside {
+        None => Ok(()),
+        Some(sample) => {
+            let (frame, frames_per_second) = (sample.frame, clip.fps());
+            Err(ExportError::FrameTooLarge { frame, largest, frames_per_second, format: "nCache" })
+        }
+    }
+}
+
 /// Writes `<object>.xml` and `<object>Frame<n>.mc` into a folder.
 pub(crate) fn write<R: Read + Seek>(
     clip: &mut Clip<R>,
@@ -72,7 +88,10 @@ fn ticks(frames: f64, per_frame: i32) -> i32 {
 fn numbered(sample: &Sample, tick: i32, per_frame: i32) -> String {
     match sample.ends_frame() {
         true => format!("Frame{}", sample.frame),
-        false => format!("Frame{}Tick{}", sample.frame - 1, tick - (sample.frame - 1) * per_frame),
+        false => {
+            let before = i64::from(sample.frame) - 1;
+            format!("Frame{before}Tick{}", i64::from(tick) - before * i64::from(per_frame))
+        }
     }
 }
 
@@ -119,8 +138,9 @@ fn description<R: Read + Seek>(clip: &Clip<R>, channels: &[Channel], width: Widt
 }
 
 /// The type and the rate of the sampling: the distance of neighbouring samples in ticks, the least one if it varies.
-fn sampling(ticks: &[i32], per_frame: i32) -> (&'static str, i32) {
-    let steps = || ticks.windows(2).map(|pair| pair[1] - pair[0]);
+fn sampling(ticks: &[i32], per_frame: i32) -> (&'static str, i64) {
+    let steps = || ticks.windows(2).map(|pair| i64::from(pair[1]) - i64::from(pair[0]));
+    let per_frame = i64::from(per_frame);
     let (least, most) = (steps().min().unwrap_or(per_frame), steps().max().unwrap_or(per_frame));
     (if least == most { "Regular" } else { "Irregular" }, least)
 }

@@ -236,3 +236,23 @@ fn runs_that_start_apart_do_not_differ_in_the_frames_of_both() {
     assert_eq!(stdout(&diff).lines().next(), Some("frame 1 is the first that is in `drape.mcap` only"));
     assert!(!stdout(&diff).contains("first in"), "{}", stdout(&diff));
 }
+
+#[test]
+fn an_ncache_of_frames_beyond_its_ticks_is_refused_before_anything_is_written() {
+    let folder = folder();
+    scene(folder.path(), 12, "");
+    let run = |arguments: &[&str]| nucleus(folder.path(), arguments);
+    let frames = "8589931..8589936";
+    assert_eq!(run(&["run", "drape.ron", "-o", "late.mcap", "--frames", frames]).status.code(), Some(0));
+    for format in ["mc", "mcx"] {
+        let export = ["export", "late.mcap", "--as", format, "-o", "out"];
+        assert_refused(
+            &run(&export),
+            "frame 8589935 is beyond 8589934, the largest that nCache can state at 24",
+        );
+        assert!(!folder.path().join("out").exists());
+    }
+    let export = ["export", "late.mcap", "--as", "mcx", "-o", "out", "--frames", "8589931..8589934"];
+    assert_eq!(run(&export).status.code(), Some(0));
+    assert_eq!(run(&["diff", "late.mcap", "out/cloth1.xml", "--tolerance", "1e-3"]).status.code(), Some(1));
+}
