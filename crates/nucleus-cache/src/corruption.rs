@@ -85,10 +85,10 @@ impl fmt::Display for CorruptionReport {
             parts.push("the text of the scene is damaged".to_owned());
         }
         if !self.frames.is_empty() {
-            parts.push(format!("missing or damaged: {}", ranges(&self.frames)));
+            parts.push(format!("missing or damaged: {}", frame_ranges(&self.frames)));
         }
         if !self.checkpoints.is_empty() {
-            parts.push(format!("damaged: the checkpoint of {}", ranges(&self.checkpoints)));
+            parts.push(format!("damaged: the checkpoint of {}", frame_ranges(&self.checkpoints)));
         }
         match parts.is_empty() {
             true => f.write_str("nothing is lost"),
@@ -103,7 +103,7 @@ fn names(objects: &[String]) -> String {
 }
 
 /// `frame 3`, `frames 3 to 5, 9`.
-fn ranges(frames: &[i32]) -> String {
+pub fn frame_ranges(frames: &[i32]) -> String {
     let runs = frames.chunk_by(|a, b| a.checked_add(1) == Some(*b));
     let runs: Vec<String> = runs
         .map(|run| match run {

@@ -70,7 +70,7 @@ mod write;
 
 pub use camera::{Camera, CameraView, FilmFit};
 pub use container::part_file::part_path;
-pub use corruption::CorruptionReport;
+pub use corruption::{CorruptionReport, frame_ranges};
 pub use error::{OpenError, ReadError, RecordError};
 pub use liquid_surface::LiquidSurface;
 pub use messages::checkpoint::Checkpoint;

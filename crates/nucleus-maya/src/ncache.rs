@@ -103,6 +103,17 @@ impl NCache {
         }
     }
 
+    /// The whole frames at which an object has positions, in order.
+    pub fn whole_frames(&self, object: &str) -> Vec<i32> {
+        let has =
+            |sample: &&CacheSample| sample.channels.iter().any(|channel| channel.object() == Some(object));
+        let frames = self.samples.iter().filter(has).map(|sample| sample.frame);
+        let mut frames: Vec<i32> =
+            frames.filter(|frame| frame.fract() == 0.0).map(|frame| frame as i32).collect();
+        frames.dedup();
+        frames
+    }
+
     /// The time of a tick in frames; a whole number within half a tick of it, where a frame has no whole number of ticks.
     fn frame_at(&self, tick: f64) -> f64 {
         let frame = tick / self.ticks_per_frame;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use nucleus_cache::{Comparison, Detail, Difference, Playback, PointDifference, compare};
+use nucleus_cache::{Comparison, Detail, Difference, Playback, PointDifference, compare, frame_ranges};
 use nucleus_maya::ncache::NCache;
 use serde_json::{Value, json};
 
@@ -15,7 +15,8 @@ use crate::{figures, files, options, output};
 /// Compares two caches: reports the first frame, substep, object and point that differ, and the largest distance.
 ///
 /// The second may be an nCache of Maya (.xml, .mc, .mcx): objects go together by name (`nCloth1` and `nClothShape1`), or
-/// if each side has only one; distances are also given as shares of the distance travelled.
+/// if each side has only one; distances are also given as shares of the distance travelled. A frame that only one of them
+/// has is a difference.
 ///
 /// Exits with 0 if the caches are equal and with 1 if they differ. Frames of the same number are compared, with all values
 /// that both caches record: positions, velocities, contacts, strain, and radius, opacity, colours and orientation of
@@ -61,10 +62,19 @@ impl Diff {
         let (mut within, mut reports) = (true, Vec::new());
         for (object, name) in pairs {
             let found = deviation(first, object, second, name)?;
-            within &= found.frames > 0 && found.largest.0 <= self.tolerance;
+            within &= found.is_complete() && found.largest.0 <= self.tolerance;
             match self.json {
                 true => reports.push(found.as_json(&own[object], name)),
-                false => output::print(&found.as_text(&own[object], name))?,
+                false => {
+                    output::print(&found.as_text(&own[object], name))?;
+                    for (frames, file) in
+                        [(&found.only_first, &self.first), (&found.only_second, &self.second)]
+                    {
+                        if !frames.is_empty() {
+                            output::print(&only_in(frames, &own[object], file))?;
+                        }
+                    }
+                }
             }
         }
         if self.json {
@@ -158,6 +168,9 @@ struct Deviation {
     frames: usize,
     /// Frames at which the numbers of points differ.
     other_counts: usize,
+    /// Frames that only the run has, and those that only the nCache has.
+    only_first: Vec<i32>,
+    only_second: Vec<i32>,
     /// Distance, frame and point.
     largest: (f64, i32, usize),
     squares: f64,
@@ -173,9 +186,14 @@ fn deviation(first: &mut Playback, object: usize, second: &NCache, name: &str) -
         .map(|(k, sample)| (k, sample.frame))
         .collect();
     let mut found = Deviation::default();
+    let has = |frame: i32| samples.iter().any(|&(_, own)| own == frame);
+    found.only_second = second.whole_frames(name).into_iter().filter(|&frame| !has(frame)).collect();
     let mut start: Option<&[[f64; 3]]> = None;
-    for (sample, frame) in samples {
-        let Some(points) = second.positions(name, f64::from(frame)) else { continue };
+    for &(sample, frame) in &samples {
+        let Some(points) = second.positions(name, f64::from(frame)) else {
+            found.only_first.push(frame);
+            continue;
+        };
         let own = first.positions(object, sample)?;
         if own.len() != points.len() {
             found.other_counts += 1;
@@ -199,6 +217,11 @@ fn deviation(first: &mut Playback, object: usize, second: &NCache, name: &str) -
 }
 
 impl Deviation {
+    /// Whether every frame of both is compared.
+    fn is_complete(&self) -> bool {
+        self.frames > 0 && self.other_counts == 0 && self.only_first.is_empty() && self.only_second.is_empty()
+    }
+
     fn rms(&self) -> f64 {
         (self.squares / self.points.max(1) as f64).sqrt()
     }
@@ -231,9 +254,15 @@ impl Deviation {
         json!({
             "object": own, "channel": other, "frames": self.frames, "other_counts": self.other_counts,
             "largest": { "distance": largest, "frame": frame, "point": point }, "rms": self.rms(),
-            "travelled": self.travelled, "share": self.share(),
+            "travelled": self.travelled, "share": self.share(), "only_in_1": self.only_first, "only_in_2": self.only_second,
         })
     }
+}
+
+/// `` frames 7 to 40 of `cloth1` are in `run.mcap` only ``, at the end a line feed.
+fn only_in(frames: &[i32], object: &str, file: &Path) -> String {
+    let verb = if frames.len() == 1 { "is" } else { "are" };
+    format!("{} of `{object}` {verb} in `{}` only\n", frame_ranges(frames), file.display())
 }
 
 /// How moments are named: a substep only where the first cache holds all of them, else its number is not known.

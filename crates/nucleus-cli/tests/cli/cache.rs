@@ -238,6 +238,34 @@ fn runs_that_start_apart_do_not_differ_in_the_frames_of_both() {
 }
 
 #[test]
+fn frames_of_an_ncache_or_of_the_run_alone_are_a_difference() {
+    let folder = folder();
+    scene(folder.path(), 12, "");
+    let run = |arguments: &[&str]| nucleus(folder.path(), arguments);
+    assert_eq!(run(&["run", "drape.ron", "-o", "long.mcap"]).status.code(), Some(0));
+    assert_eq!(run(&["run", "drape.ron", "-o", "short.mcap", "--frames", "1..6"]).status.code(), Some(0));
+    for name in ["long", "short"] {
+        let export = run(&["export", &format!("{name}.mcap"), "--as", "mcx", "-o", name]);
+        assert_eq!(export.status.code(), Some(0), "{}", stderr(&export));
+    }
+    let diff = |cache: &str, ncache: &str| {
+        let output = run(&["diff", cache, ncache, "--tolerance", "1e-3"]);
+        (output.status.code(), stdout(&output) + &stderr(&output))
+    };
+    for name in ["long", "short"] {
+        let said = diff(&format!("{name}.mcap"), &format!("{name}/cloth1.xml"));
+        assert!(said.0 == Some(0) && !said.1.contains("only"), "{}", said.1);
+    }
+    let (code, text) = diff("long.mcap", "short/cloth1.xml");
+    assert!(code == Some(1) && text.contains("frames 7 to 12 of `cloth1` are in `long.mcap` only"), "{text}");
+    let (code, text) = diff("short.mcap", "long/cloth1.xml");
+    assert!(
+        code == Some(1) && text.contains("frames 7 to 12 of `cloth1` are in `long/cloth1.xml` only"),
+        "{text}"
+    );
+}
+
+#[test]
 fn an_ncache_of_frames_beyond_its_ticks_is_refused_before_anything_is_written() {
     let folder = folder();
     scene(folder.path(), 12, "");
