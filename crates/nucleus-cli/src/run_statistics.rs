@@ -164,7 +164,9 @@ impl FrameStatistics {
 pub struct RunStatistics {
     /// Frames that this process has simulated.
     pub frames: u32,
-    /// Wall-clock time of those frames.
+    /// Frames before those, which the cache of a resumed run holds.
+    pub frames_before: u32,
+    /// Wall-clock time of the frames that this process has simulated.
     pub time: Duration,
     /// Wall-clock time of the last frame.
     pub last_frame_time: Duration,
@@ -228,6 +230,7 @@ impl RunStatistics {
 
     /// Adds a frame that a cache holds; it takes no time, and the audit of this process does not see it.
     pub fn add_recorded(&mut self, figures: &FrameStatistics) {
+        self.frames_before += 1;
         self.passed_through_before += figures.passed_through.unwrap_or_default();
         self.add_figures(figures);
     }

@@ -76,7 +76,11 @@ impl Summary<'_> {
         let mut text = String::new();
         let seconds = figures::number(statistics.time.as_secs_f64());
         let each = figures::number(statistics.milliseconds());
-        writeln!(text, "frames {start} to {last} in {seconds} s, {each} ms/frame")?;
+        let timed = match statistics.frames_before {
+            0 => String::new(),
+            _ => format!(", {} solved now", statistics.frames),
+        };
+        writeln!(text, "frames {start} to {last}{timed} in {seconds} s, {each} ms/frame")?;
         if let Some((strain, frame)) = statistics.worst_strain {
             let of_99 = statistics.worst_strain_99.map_or(String::new(), |(strain, frame)| {
                 format!("; p99 strain {} at frame {frame}", figures::percent(strain))
@@ -182,7 +186,8 @@ impl Summary<'_> {
             "start": start,
             "last": last,
             "state_hash": self.hash,
-            "frames": statistics.frames,
+            "frames": statistics.frames_before + statistics.frames,
+            "frames_before": statistics.frames_before,
             "seconds": statistics.time.as_secs_f64(),
             "milliseconds_per_frame": statistics.milliseconds(),
             "worst_strain": at(statistics.worst_strain),

@@ -203,6 +203,7 @@ impl WedgeFolder {
 mod tests {
     use super::*;
     use crate::plan::PlanHeader;
+    use crate::result::SolvedFrames;
 
     fn wedge() -> (tempfile::TempDir, WedgeFolder, Plan) {
         let folder = tempfile::tempdir().unwrap();
@@ -221,7 +222,15 @@ mod tests {
     }
 
     fn result(outcome: RunOutcome) -> RunResult {
-        RunResult { outcome, error: None, seconds: 1.0, at_once: 1, machine: String::new(), report: None }
+        RunResult {
+            outcome,
+            error: None,
+            seconds: 1.0,
+            earlier: SolvedFrames::default(),
+            at_once: 1,
+            machine: String::new(),
+            report: None,
+        }
     }
 
     #[test]

@@ -40,4 +40,4 @@ pub use error::WedgeError;
 pub use folder::{RunLock, WedgeFolder};
 pub use plan::{Plan, PlanHeader, PlannedRun, parse_selection, run_name};
 pub use pool::{BUSY, Event, Pool, machine, when_parent_ends};
-pub use result::{RunOutcome, RunResult};
+pub use result::{RunOutcome, RunResult, SolvedFrames};

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use crate::error::{WedgeError, at};
 use crate::folder::WedgeFolder;
 use crate::plan::{PlanHeader, PlannedRun};
-use crate::result::{RunOutcome, RunResult};
+use crate::result::{RunOutcome, RunResult, SolvedFrames};
 
 /// Exit code of a child whose run another process is at.
 pub const BUSY: i32 = 75;
@@ -193,6 +193,7 @@ impl Pool<'_> {
             outcome,
             error: Some(error),
             seconds: time.as_secs_f64(),
+            earlier: SolvedFrames::default(),
             at_once: self.jobs as u32,
             machine: machine(),
             report: None,

@@ -27,8 +27,11 @@ pub struct RunResult {
     /// Why it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-    /// Wall-clock time of its process in seconds; of the last one if it was resumed.
+    /// Wall-clock time of its process in seconds. A resumed run adds that of the earlier processes whose time is known.
     pub seconds: f64,
+    /// The frames that earlier processes of a resumed run solved, as far as their time is known.
+    #[serde(default, skip_serializing_if = "SolvedFrames::is_none")]
+    pub earlier: SolvedFrames,
     /// Runs that were started side by side, this one included. Times are those of a run alone only if it is 1.
     pub at_once: u32,
     /// The machine that ran it.
@@ -36,6 +39,26 @@ pub struct RunResult {
     /// The report of the command.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<Value>,
+}
+
+/// Solved frames and their time. A frame that was solved again counts twice.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct SolvedFrames {
+    /// How many.
+    pub frames: u64,
+    /// Wall-clock time of all of them in seconds.
+    pub seconds: f64,
+}
+
+impl SolvedFrames {
+    fn is_none(&self) -> bool {
+        self.frames == 0
+    }
+
+    /// Mean time of a frame in milliseconds; `None` without frames.
+    pub fn milliseconds(&self) -> Option<f64> {
+        (self.frames > 0).then(|| 1e3 * self.seconds / self.frames as f64)
+    }
 }
 
 impl RunOutcome {
@@ -62,6 +85,27 @@ impl RunResult {
         self.report.as_ref().map_or(&Value::Null, |report| &report["summary"][key])
     }
 
+    /// The frames that all processes of the run have solved, as far as their time is known: a process that was killed left
+    /// none. `None` if the report has no frames.
+    pub fn solved(&self) -> Option<SolvedFrames> {
+        let before = self.figure("frames_before").as_u64().unwrap_or_default();
+        let frames = self.figure("frames").as_u64()?.saturating_sub(before);
+        let seconds = self.figure("seconds").as_f64()?;
+        Some(SolvedFrames { frames: self.earlier.frames + frames, seconds: self.earlier.seconds + seconds })
+    }
+
+    /// This result with the times of an earlier one, if this process has continued its frames.
+    pub fn after(mut self, earlier: Option<&Self>) -> Self {
+        let has_continued = self.figure("frames_before").as_u64().is_some_and(|frames| frames > 0);
+        if let Some(earlier) = earlier.filter(|_| has_continued)
+            && let Some(solved) = earlier.solved()
+        {
+            self.earlier = solved;
+            self.seconds += earlier.seconds;
+        }
+        self
+    }
+
     /// The problems in words: the error, failed checks, unresolved contact.
     pub fn problems(&self) -> Vec<String> {
         let mut all: Vec<String> = self.error.iter().cloned().collect();
@@ -85,4 +129,44 @@ fn failed_check(check: &Value) -> String {
         (figure, frame) => format!(" with {figure} at frame {frame}"),
     };
     format!("check {} failed{figure}", check["check"].as_str().unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// A process that continued a run of `before` frames and solved `frames` in `seconds`.
+    fn process(outcome: RunOutcome, before: u64, frames: u64, seconds: f64) -> RunResult {
+        let summary = json!({ "frames": before + frames, "frames_before": before, "seconds": seconds });
+        let report = Some(json!({ "summary": summary }));
+        let (earlier, machine) = (SolvedFrames::default(), String::new());
+        RunResult { outcome, error: None, seconds: seconds + 1.0, earlier, at_once: 1, machine, report }
+    }
+
+    #[test]
+    fn a_resumed_run_has_the_time_of_all_its_processes() {
+        let first = process(RunOutcome::Interrupted, 0, 10, 4.0);
+        let second = process(RunOutcome::Interrupted, 10, 5, 2.0).after(Some(&first));
+        let last = process(RunOutcome::Success, 15, 5, 4.0).after(Some(&second));
+        assert_eq!(last.solved(), Some(SolvedFrames { frames: 20, seconds: 10.0 }));
+        assert_eq!((last.solved().unwrap().milliseconds(), last.seconds), (Some(500.0), 13.0));
+        let read: RunResult = serde_json::from_value(json!(last)).unwrap();
+        assert_eq!(read, last);
+    }
+
+    #[test]
+    fn frames_of_a_killed_process_are_part_of_the_run_and_have_no_time() {
+        let killed = RunResult { report: None, ..process(RunOutcome::Killed, 0, 0, 0.0) };
+        let last = process(RunOutcome::Success, 15, 5, 4.0).after(Some(&killed));
+        assert_eq!((last.figure("frames"), last.solved().unwrap().frames), (&json!(20), 5));
+        let anew = process(RunOutcome::Success, 0, 20, 4.0).after(Some(&process(
+            RunOutcome::Interrupted,
+            0,
+            9,
+            3.0,
+        )));
+        assert_eq!(anew.solved(), Some(SolvedFrames { frames: 20, seconds: 4.0 }), "it started again");
+    }
 }

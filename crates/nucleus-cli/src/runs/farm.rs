@@ -10,7 +10,7 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 use nucleus_wedge::collect::Counts;
 use nucleus_wedge::slurm::{Request, Slurm};
-use nucleus_wedge::{Plan, RunOutcome, RunResult, WedgeFolder};
+use nucleus_wedge::{Plan, RunOutcome, RunResult, SolvedFrames, WedgeFolder};
 
 use crate::output::say;
 use crate::{figures, options, process};
@@ -183,6 +183,7 @@ fn given_up(attempts: usize) -> RunResult {
             figures::count(attempts, "time")
         )),
         seconds: 0.0,
+        earlier: SolvedFrames::default(),
         at_once: 1,
         machine: String::new(),
         report: None,

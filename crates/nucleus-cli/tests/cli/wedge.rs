@@ -54,6 +54,29 @@ fn a_wedge_runs_every_row_and_writes_a_page_and_a_table() {
 }
 
 #[test]
+fn the_table_counts_the_frames_that_a_resumed_run_kept() {
+    let folder = folder();
+    scene(folder.path(), 12, "");
+    assert_eq!(wedge(folder.path(), &["--checkpoint", "4"]).status.code(), Some(0));
+    // As if the process of the first run had been killed after frame 9.
+    let cache = folder.path().join("w/runs/0000.mcap");
+    let bytes = fs::read(&cache).unwrap();
+    fs::write(folder.path().join("w/runs/0000.mcap.part"), &bytes[..bytes.len() * 4 / 5]).unwrap();
+    fs::remove_file(cache).unwrap();
+    fs::remove_file(folder.path().join("w/results/0000.json")).unwrap();
+    let output = nucleus(folder.path(), &["wedge", "--continue", "--out", "w"]);
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    let rows = table(folder.path());
+    let of = |run: usize, figure: &str| {
+        let column = rows[0].iter().position(|name| name == figure).unwrap();
+        rows[1 + run][column].parse::<f64>().unwrap()
+    };
+    assert_eq!((of(0, "frames"), of(1, "frames")), (11.0, 11.0));
+    assert!(of(0, "frames timed") < 9.0, "{} frames were solved again", of(0, "frames timed"));
+    assert_eq!(of(1, "frames timed"), 11.0);
+}
+
+#[test]
 fn a_run_of_a_wedge_has_the_bytes_of_the_same_run_by_hand() {
     let folder = folder();
     scene(folder.path(), 5, "");

@@ -126,7 +126,7 @@ fn escape(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::plan::PlanHeader;
-    use crate::result::{RunOutcome, RunResult};
+    use crate::result::{RunOutcome, RunResult, SolvedFrames};
 
     #[test]
     fn a_page_names_what_failed_and_escapes_what_it_quotes() {
@@ -142,6 +142,7 @@ mod tests {
             outcome: RunOutcome::Failed,
             error: Some("the disk is full".to_owned()),
             seconds: 1.0,
+            earlier: SolvedFrames::default(),
             at_once: 2,
             machine: String::new(),
             report: None,

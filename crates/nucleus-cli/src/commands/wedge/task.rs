@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use clap::{Parser, Subcommand};
-use nucleus_wedge::{Plan, PlannedRun, RunOutcome, RunResult, WedgeFolder, machine, when_parent_ends};
+use nucleus_wedge::{
+    Plan, PlannedRun, RunOutcome, RunResult, SolvedFrames, WedgeFolder, machine, when_parent_ends,
+};
 use serde_json::Value;
 
 use crate::commands::extremes::Extremes;
@@ -46,7 +48,8 @@ pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result
         return Ok(Outcome::Busy);
     };
     // It may have ended since the plan was looked at.
-    if folder.result(&planned.name)?.is_some_and(|result| result.outcome.is_final()) {
+    let earlier = folder.result(&planned.name)?;
+    if earlier.as_ref().is_some_and(|result| result.outcome.is_final()) {
         return Ok(Outcome::Success);
     }
     process::listen_for_signals()?;
@@ -59,11 +62,12 @@ pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result
         outcome,
         error,
         seconds: begin.elapsed().as_secs_f64(),
+        earlier: SolvedFrames::default(),
         at_once,
         machine: machine(),
         report,
     };
-    folder.write_result(&planned.name, &result)?;
+    folder.write_result(&planned.name, &result.after(earlier.as_ref()))?;
     Ok(match outcome {
         RunOutcome::Success => Outcome::Success,
         RunOutcome::Interrupted => Outcome::Interrupted,
