@@ -246,6 +246,32 @@ fn particles_have_their_recorded_radius_and_colour() {
 }
 
 #[test]
+fn particles_and_their_surface_take_the_colour_of_speed_particles_that_of_contacts_and_none_of_strain() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let sample = Sample { dust: true, blown: true, bare: true, contacts: true, ..Sample::default() };
+    let player = serve(written(folder.path(), sample), 0).unwrap();
+    let green = |shown: &Shown| shown.share(|[red, green, blue]| *green > 50 && *green / 2 > *red.max(blue));
+    let red = |shown: &Shown| shown.share(|[red, green, blue]| *red > 50 && *red / 2 > *green.max(blue));
+    let blue = |shown: &Shown| shown.share(|[red, _, blue]| *blue > 60 && *blue / 2 > *red);
+    let look = |options: &str, share: &dyn Fn(&Shown) -> f64| {
+        look_until(&player, chromium, &format!("frame=12{options}"), |shown| share(shown) > 0.01)
+    };
+    assert!(green(&look("", &green)) > 0.01);
+    // 1.2 units per second is far above the scale.
+    let fast = look("&speed=0.5", &red);
+    assert!(red(&fast) > 0.01 && green(&fast) < 1e-3, "{} is red, {} is green", red(&fast), green(&fast));
+    assert!(fast.page.contains("speed, units per second"), "{}", fast.page);
+    let surface = look("&speed=0.5&surface", &red);
+    assert!(red(&surface) > 0.01 && surface.page.contains(">surface · "), "{}", surface.page);
+    let touching = look("&contacts", &blue);
+    assert!(blue(&touching) > 0.01 && green(&touching) < 1e-3, "{} is blue", blue(&touching));
+    assert!(touching.page.replace('\n', "").contains(" touching</dt><dd>4</dd>"), "{}", touching.page);
+    let strained = look("&strain=0.1", &green);
+    assert!(green(&strained) > 0.01 && strained.page.contains(r#"id="legend" hidden="#), "{}", strained.page);
+}
+
+#[test]
 fn a_tilted_ground_plane_is_drawn_as_it_is() {
     let Some(chromium) = chromium() else { return };
     let shown = |sample: Sample| {

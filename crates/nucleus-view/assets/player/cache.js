@@ -65,16 +65,17 @@ export class Cache {
       throw new DamagedFrame();
     }
     const all = this.objects.map((_, k) => this.objectAt(k, index, last, times[last].nanoseconds));
-    const [positions, meshes] = [[], []];
+    const [positions, velocities, meshes] = [[], [], []];
     for (const found of await Promise.all(all)) {
       positions.push(found.positions);
+      velocities.push(found.velocities);
       meshes.push(found.mesh);
     }
     const { frame, substep, substeps, time } = times[last];
     const contacts = this.objects.map((object) => times[last].contacts.get(object.contacts) ?? null);
     const looks = this.objects.map((object) => times[last].looks.get(object.looks) ?? null);
     const at = { index, timeIndex: last, times: times.length, frame, substep, substeps, time };
-    return { ...at, report, positions, meshes, contacts, looks };
+    return { ...at, report, positions, velocities, meshes, contacts, looks };
   }
 
   // Unpacks the next frames. A damaged frame is reported when it is shown.
@@ -90,14 +91,14 @@ export class Cache {
   // The positions of an object at a recorded time, and their mesh. Meshes are numbered, so that positions are never
   // combined with another mesh if theirs is lost.
   async objectAt(object, index, timeIndex, nanoseconds) {
-    const { positions, number } = await this.positionsOf(object, index, timeIndex);
+    const { positions, velocities = null, number } = await this.positionsOf(object, index, timeIndex);
     const mesh = await this.meshAt(this.objects[object], nanoseconds);
     const isOfMesh = mesh.points * 3 === positions.length;
     if (mesh.number !== number || (!isOfMesh && mesh.kind !== "particles")) {
       throw new DamagedFrame();
     }
     // Particles come and go.
-    return { positions, mesh: isOfMesh ? mesh : { ...mesh, points: positions.length / 3, rest: positions } };
+    return { positions, velocities, mesh: isOfMesh ? mesh : { ...mesh, points: positions.length / 3, rest: positions } };
   }
 
   // A mesh, with the radius of its particles, which is constant over a run.
@@ -164,9 +165,9 @@ export class Cache {
     for (const { channel, time, data } of messages) {
       const { topic, encoding } = this.channels.get(channel) ?? {};
       if (encoding === "nucleus.points.v1") {
-        const { positions, number, ...stamp } = readPoints(data);
-        Object.assign(at(time), stamp).positions.set(channel, { positions, number });
-        count(positions.byteLength);
+        const { positions, velocities, number, ...stamp } = readPoints(data);
+        Object.assign(at(time), stamp).positions.set(channel, { positions, velocities, number });
+        count(positions.byteLength + (velocities?.byteLength ?? 0));
       } else if (encoding === "nucleus.contacts.v1") {
         at(time).contacts.set(channel, readContacts(data));
         count(data.length);

@@ -19,14 +19,16 @@ export function readTopology(data) {
   };
 }
 
-// Positions at one recorded time of a frame, and the number of their mesh.
+// Positions at one recorded time of a frame, the number of their mesh, and velocities where they are recorded.
 export function readPoints(data) {
   const reader = new Reader(data);
   const [frame, substep, substeps, count] = [reader.i32(), reader.u32(), reader.u32(), reader.u32()];
-  reader.u32(); // flags
+  const flags = reader.u32();
   const number = reader.u32();
   const time = reader.f64();
-  return { frame, substep, substeps, time, number, positions: unshuffle(reader.take(12 * count), 3 * count) };
+  const vectors = () => unshuffle(reader.take(12 * count), 3 * count);
+  const positions = vectors();
+  return { frame, substep, substeps, time, number, positions, velocities: flags & 1 ? vectors() : null };
 }
 
 // The contact state of each point at one recorded time, as a byte: see CONTACT_STATES in shading.js.

@@ -135,6 +135,11 @@ export function showLegend({ colour, scales }) {
   byId("longer").textContent = isStrain ? `+${write(full)}` : write(full);
 }
 
+// Says that the speed of some particles is not known.
+export function showLegendNote(isUnknown) {
+  byId("unknown").hidden = !isUnknown;
+}
+
 // Shows the number of points in each contact state, over the visible objects.
 export function showContactStates(scene, contacts) {
   const counts = CONTACT_STATES.map(() => 0);

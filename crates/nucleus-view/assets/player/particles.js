@@ -1,15 +1,18 @@
-// Particles: discs shaded as balls, each with the radius, the opacity and the colours that the run recorded for it.
+// Particles: discs shaded as balls, each with the radius, the opacity and the colours that the run recorded for it, or
+// coloured by a quantity.
 
 import { VertexArray } from "./gl.js";
 
 const [POSITION, SIZE, COLOUR, GLOW] = [0, 1, 2, 3];
+// The column of the quantity that colours.
+export const VALUE = 4;
 // Numbers of a look: see `readLooks`.
 const NUMBERS = 8;
 
 export class Particles {
   constructor(gl) {
     this.gl = gl;
-    this.vertices = new VertexArray(gl, [3, 2, 3, 3]);
+    this.vertices = new VertexArray(gl, [3, 2, 3, 3, 1]);
     this.count = 0;
   }
 
@@ -30,6 +33,7 @@ export class Particles {
       }
     }
     Object.assign(this, { count, positions });
+    mesh.hasValues = false; // there may be fewer than particles
     [positions, size, colour, glow].forEach((values, column) => this.vertices.set([POSITION, SIZE, COLOUR, GLOW][column], values));
   }
 

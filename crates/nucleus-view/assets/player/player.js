@@ -4,12 +4,13 @@ import { Cache, floorAt } from "./cache.js";
 import { Camera } from "./camera.js";
 import { distances, fittedScale, percentile } from "./compare.js";
 import {
-  byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showNotice, showObjects, showSelections,
+  byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showLegendNote, showNotice, showObjects, showSelections,
   showSeriesFigures, showSeriesNow, showSpeed, showState, showTime,
 } from "./panel.js";
 import { levelPlane } from "./plane.js";
 import { Scene, boxOf, unionOf } from "./scene.js";
 import { Series } from "./series.js";
+import { nearestValues, particleSpeeds } from "./speed.js";
 import { hasSurfaces, withSurfaces } from "./surface.js";
 import { Timeline } from "./timeline.js";
 
@@ -73,6 +74,7 @@ export class Player {
     scene.setSelections(cache.run.selections);
     showObjects(scene, this.redraw);
     showSelections(scene, this.redraw);
+    byId("strain").hidden = !cache.objects.some(({ topology }) => topology.kind === "cloth");
     byId("contacts").hidden = !cache.objects.some((object) => object.contacts !== undefined);
     byId("surface").hidden = !hasSurfaces(cache);
     byId("camera").hidden = cache.run.cameras.length === 0;
@@ -150,7 +152,7 @@ export class Player {
       const recorded = await cache.state(index, timeIndex);
       const state = scene.look.surface ? await withSurfaces(cache, recorded) : recorded;
       const twin = await this.twinOf(cache, state);
-      await this.findSpeed(cache, state);
+      await this.findSpeed(cache, recorded, state);
       scene.objects.forEach((object, k) => (object.contacts = state.contacts[k]));
       if (cache !== this.timeline?.cache) {
         return; // another file has been opened in the meantime
@@ -165,6 +167,7 @@ export class Player {
       showFigures(state.report, scene.invalidPoints, twin?.report);
       this.compare(state, twin);
       showContactStates(scene, state.contacts);
+      showLegendNote(scene.look.colour === "speed" && scene.objects.some(({ isShown, speeds }) => isShown && speeds === null));
       showNotice("frame", "");
       this.redraw();
       cache.prefetch(index);
@@ -232,14 +235,23 @@ export class Player {
     byId("figure").value = key;
   }
 
-  // The positions of the frame before, for the speed.
-  async findSpeed(cache, state) {
-    const before = this.scene.look.colour === "speed" && state.index > 0 ? await cache.state(state.index - 1) : null;
+  // What the speed follows from: the positions of the frame before, and the speeds of particles and of their surfaces.
+  // `shown` is the recorded state, with surfaces in place of particles if they are shown.
+  async findSpeed(cache, recorded, shown) {
+    const isSpeed = this.scene.look.colour === "speed";
+    const before = isSpeed && recorded.index > 0 ? await cache.state(recorded.index - 1) : null;
     this.scene.objects.forEach((object, k) => {
-      const isSame = before?.meshes[k].number === state.meshes[k].number;
-      const seconds = isSame && state.time - before.time;
-      object.before = seconds > 0 ? { positions: before.positions[k], seconds } : null;
       object.mesh.coloured = null;
+      [object.before, object.speeds] = [undefined, undefined];
+      if (isSpeed && recorded.meshes[k].kind === "particles") {
+        const speeds = particleSpeeds(cache.objects[k].topology, k, recorded, before);
+        const isSurface = shown.meshes[k].kind === "surface";
+        object.speeds = speeds && isSurface ? nearestValues(shown.positions[k], recorded.positions[k], speeds) : speeds;
+      } else if (isSpeed) {
+        const isSame = before?.meshes[k].number === recorded.meshes[k].number;
+        const seconds = isSame && recorded.time - before.time;
+        object.before = seconds > 0 ? { positions: before.positions[k], seconds } : null;
+      }
     });
   }
 
@@ -274,6 +286,7 @@ export class Player {
     look.colour = look.colour === quantity ? "object" : quantity;
     COLOURINGS.forEach((id) => byId(id).setAttribute("aria-pressed", look.colour === id));
     showLegend(look);
+    showLegendNote(false);
     this.timeline.go(this.timeline.index, this.timeline.timeIndex); // speeds are computed only when shown
     this.redraw();
   }

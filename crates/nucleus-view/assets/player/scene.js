@@ -3,7 +3,7 @@
 import { cross, multiply, normalise, orthographic, view } from "./camera.js";
 import { VertexArray, context, depthTarget, program } from "./gl.js";
 import { MAX_COORDINATE, Mesh } from "./mesh.js";
-import { Particles } from "./particles.js";
+import { Particles, VALUE as PARTICLE_VALUE } from "./particles.js";
 import { axesOf, foot } from "./plane.js";
 import {
   CONTACT_STATE_COLOURS, DEPTH, DOTS, FLOOR, LINES, PARTICLES, SELECTION_COLOURS, STRAIN, SURFACE, objectColours,
@@ -224,26 +224,48 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  // Computes the scalar that colours a mesh, if it is not current.
-  colourMesh({ mesh, vertices, topology, before, twin, contacts }, isColoured) {
-    const { colour } = this.look;
+  // Whether an object has the quantity that colours; an object without it keeps its own colour.
+  hasQuantity({ mesh, topology, speeds, before, twin, contacts }) {
+    switch (this.look.colour) {
+      case "strain": return mesh.kind === "cloth";
+      case "speed": return speeds?.length === mesh.count || before !== undefined;
+      case "contacts": return ["cloth", "particles"].includes(mesh.kind) && contacts !== undefined;
+      // Points correspond only if both runs have the same number.
+      case "difference": return Boolean(twin?.mesh.points) && twin.topology.points === topology.points;
+      default: return false;
+    }
+  }
+
+  // Computes the scalar that colours an object, if it is not current, and stores it in a column of vertices. Returns the
+  // uniforms of the colours.
+  colouring(object, vertices, column) {
+    const { mesh, speeds, before, twin, contacts } = object;
+    const { colour, scales } = this.look;
+    const isColoured = this.hasQuantity(object);
     if (isColoured && mesh.coloured !== colour) {
       mesh.coloured = colour;
       if (colour === "strain") {
         mesh.updateStrain();
+      } else if (colour === "speed" && speeds) {
+        mesh.values.set(speeds);
       } else if (colour === "speed") {
         mesh.updateDistance(before?.positions, before ? 1 / before.seconds : 0);
       } else if (colour === "contacts") {
         mesh.updateContactStates(contacts);
       } else {
-        // Points correspond only if both runs have the same number.
-        mesh.updateDistance(twin?.topology.points === topology.points ? twin.mesh.points : null, 1);
+        mesh.updateDistance(twin.mesh.points, 1);
       }
-      vertices.set(VALUE, mesh.values);
+      vertices.set(column, mesh.values);
     } else if (!mesh.hasValues) {
-      vertices.set(VALUE, mesh.values); // zeros, because an attribute needs data
+      vertices.set(column, mesh.values); // zeros, because an attribute needs data
     }
     mesh.hasValues = true;
+    const isCategorical = isColoured && colour === "contacts";
+    return {
+      "ramp[0]": (isCategorical ? CONTACT_STATE_COLOURS : STRAIN).flat(),
+      fullScale: (isColoured && scales[colour]) || 0,
+      isCategorical: isCategorical ? 1 : 0,
+    };
   }
 
   // Draws the edges of the other run over this one.
@@ -278,17 +300,12 @@ export class Scene {
     if (mesh.kind === "particles") {
       const pixels = this.canvas.height;
       const radius = mesh.radius ?? eye.reach * 0.008;
-      this.use(programs.particles, { ...eye, colour, radius, pixels });
+      const colours = this.colouring(object, particles.vertices, PARTICLE_VALUE);
+      this.use(programs.particles, { ...eye, colour, radius, pixels, ...colours });
       particles.draw(eye.view);
       return;
     }
-    const isOfCloth = ["strain", "contacts"].includes(look.colour);
-    const isColoured = look.colour !== "object" && (!isOfCloth || mesh.kind === "cloth");
-    this.colourMesh(object, isColoured);
-    const isCategorical = isColoured && look.colour === "contacts";
-    const ramp = (isCategorical ? CONTACT_STATE_COLOURS : STRAIN).flat();
-    const fullScale = (isColoured && look.scales[look.colour]) || 0;
-    this.use(programs.surface, { ...eye, colour, "ramp[0]": ramp, fullScale, isCategorical: isCategorical ? 1 : 0 });
+    this.use(programs.surface, { ...eye, colour, ...this.colouring(object, vertices, VALUE) });
     vertices.draw(gl.TRIANGLES, TRIANGLES);
     if (look.wireframe) {
       gl.enable(gl.BLEND);

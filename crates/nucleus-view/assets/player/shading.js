@@ -62,36 +62,43 @@ vec3 diffuse(vec3 colour, vec3 normal, float key) {
 }
 `;
 
-export const SURFACE = {
-  vertex: `${HEAD}
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in float value;
+// The colour of a scalar in units of the full scale.
+const SCALAR = `
 uniform vec3 ramp[5];
-out vec3 at, facing, tint;
-out float scalar;
-void main() {
-  at = position; facing = normal; scalar = value;
-  tint = ramp[clamp(int(value + 0.5), 0, 4)]; // categories are not interpolated, only their colours
-  gl_Position = projection * view * vec4(position, 1.0);
-}`,
-  fragment: `${HEAD}${SHADOW}
-uniform vec3 colour, ramp[5];
 uniform float fullScale, isCategorical;
-in vec3 at, facing, tint;
-in float scalar;
-out vec4 shown;
-vec3 scalarColour() {
+vec3 scalarColour(float scalar) {
   float place = clamp(scalar / fullScale, -1.0, 1.0) * 2.0 + 2.0;
   int low = min(int(place), 3);
   return mix(ramp[low], ramp[low + 1], place - float(low));
 }
+vec3 categoryColour(float value) {
+  return ramp[clamp(int(value + 0.5), 0, 4)];
+}
+`;
+
+export const SURFACE = {
+  vertex: `${HEAD}${SCALAR}
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in float value;
+out vec3 at, facing, tint;
+out float scalar;
+void main() {
+  at = position; facing = normal; scalar = value;
+  tint = categoryColour(value); // categories are not interpolated, only their colours
+  gl_Position = projection * view * vec4(position, 1.0);
+}`,
+  fragment: `${HEAD}${SHADOW}${SCALAR}
+uniform vec3 colour;
+in vec3 at, facing, tint;
+in float scalar;
+out vec4 shown;
 void main() {
   vec3 ray = normalize(at - eye);
   vec3 normal = normalize(facing);
   bool isBack = !gl_FrontFacing;
   if (isBack) normal = -normal;
-  vec3 base = isCategorical > 0.0 ? tint : fullScale > 0.0 ? scalarColour() : colour;
+  vec3 base = isCategorical > 0.0 ? tint : fullScale > 0.0 ? scalarColour(scalar) : colour;
   if (isBack) base *= 0.72;
   float key = keyVisibility(at, normal);
   float grazing = 1.0 - min(abs(dot(ray, normal)), 1.0);
@@ -113,20 +120,24 @@ uniform vec4 ink;
 void main() { shown = ink; }`,
 };
 
-// A disc per particle, shaded as a ball. `size` is the factor on the radius and the opacity.
+// A disc per particle, shaded as a ball. `size` is the factor on the radius and the opacity. A quantity that colours
+// replaces the colour and the light of a particle.
 export const PARTICLES = {
-  vertex: `${HEAD}
+  vertex: `${HEAD}${SCALAR}
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 size;
 layout(location = 2) in vec3 own;
 layout(location = 3) in vec3 given;
+layout(location = 4) in float value;
 uniform vec3 colour;
 uniform float radius, pixels;
 out vec3 tint, glow;
 out float opacity;
 void main() {
-  tint = own.r < 0.0 ? colour : own; // below 0: no colour of its own
-  glow = given; opacity = size.y;
+  bool isColoured = isCategorical > 0.0 || fullScale > 0.0;
+  tint = isCategorical > 0.0 ? categoryColour(value) : fullScale > 0.0 ? scalarColour(value)
+    : own.r < 0.0 ? colour : own; // below 0: no colour of its own
+  glow = isColoured ? vec3(0.0) : given; opacity = size.y;
   gl_Position = size.x > 0.0 ? projection * view * vec4(position, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
   gl_PointSize = max(2.0, size.x * radius * projection[1][1] * pixels / gl_Position.w);
 }`,

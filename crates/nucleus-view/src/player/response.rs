@@ -200,6 +200,7 @@ const ASSETS: &[Asset] = assets![
     "/player/shading.js" as SCRIPT,
     "/player/series.js" as SCRIPT,
     "/player/source.js" as SCRIPT,
+    "/player/speed.js" as SCRIPT,
     "/player/surface.js" as SCRIPT,
     "/player/timeline.js" as SCRIPT,
     "/vendor/fzstd.mjs" as SCRIPT,

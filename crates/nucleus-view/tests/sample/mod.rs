@@ -48,6 +48,10 @@ pub struct Sample {
     pub rise: f64,
     /// Particles beside the flag, green and half transparent.
     pub dust: bool,
+    /// They move by 0.05 along X in each frame.
+    pub blown: bool,
+    /// There is no flag.
+    pub bare: bool,
 }
 
 fn hoist() -> SelectedPoints {
@@ -84,8 +88,8 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
         ..RunInfo::default()
     };
     let run = RunInfo { cameras: sample.camera.then(camera).into_iter().collect(), ..run };
-    let mut recorder = Recorder::create(path, &run, objects(sample.dust)).unwrap();
-    recorder.record_start(&State { time: 0.0, frame: 1, broken: false }).unwrap();
+    let mut recorder = Recorder::create(path, &run, objects(sample)).unwrap();
+    recorder.record_start(&State { time: 0.0, frame: 1, broken: false, blown: sample.blown }).unwrap();
     recorder
 }
 
@@ -117,7 +121,7 @@ pub fn step(recorder: &mut Recorder, sample: Sample, frame: i32) {
         if sample.torn && (frame, substep) == (FRAMES / 2, 1) {
             watching.change_mesh(moment, "flag", half_grid(), rest());
         }
-        watching.substep(moment, &State { time, frame, broken });
+        watching.substep(moment, &State { time, frame, broken, blown: sample.blown });
     }
     let report = StepReport { max_strain: 0.0123, min_gap: 0.98, contacts: 4321, ..StepReport::default() };
     let report = [("max_strain", report.max_strain), ("min_gap", report.min_gap), ("contacts", 4321.0)];
@@ -129,12 +133,15 @@ struct State {
     time: f32,
     frame: i32,
     broken: bool,
+    blown: bool,
 }
 
 impl StateView for State {
     fn positions(&self, cloth: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
         if cloth == DUST {
             *out = dust();
+            let moved = if self.blown { 0.05 * self.time } else { 0.0 };
+            out.iter_mut().for_each(|point| point[0] += moved);
             return;
         }
         *out = flag(self.time);
@@ -151,7 +158,7 @@ impl StateView for State {
     fn velocities(&self, _: ClothId, _: f64, _: &mut Vec<[f32; 3]>) {}
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
         let at_hoist = |k: u32| if k % SIDE < SIDE / 2 { ContactState::Touching } else { ContactState::Free };
-        *out = vec![(0..SIDE * SIDE).map(at_hoist).collect()];
+        *out = vec![(0..SIDE * SIDE).map(at_hoist).collect(), vec![ContactState::Touching; dust().len()]];
         out[0][0] = ContactState::Intersecting;
     }
     fn collider_positions(&self, collider: ColliderId, _: f64, out: &mut Vec<[f32; 3]>) {
@@ -168,7 +175,7 @@ impl StateView for State {
     }
 }
 
-fn objects(has_dust: bool) -> Vec<(Source, ObjectInfo)> {
+fn objects(sample: Sample) -> Vec<(Source, ObjectInfo)> {
     let [(sphere, at_start), (cube, corners)] = [sphere(), cube()];
     let (cloth, collider) = (ObjectKind::Cloth, ObjectKind::Collider);
     let object = |name: &str, kind, faces, rest| ObjectInfo { name: name.into(), kind, faces, rest };
@@ -178,8 +185,9 @@ fn objects(has_dust: bool) -> Vec<(Source, ObjectInfo)> {
         (Source::Collider(BALL), object("ball", collider, sphere, at_start)),
         (Source::Collider(ColliderId(1)), object("cube", collider, cube, corners)),
     ];
-    let dust = has_dust.then_some((Source::Cloth(DUST), particles));
-    [flag].into_iter().chain(dust).chain(colliders).collect()
+    let dust = sample.dust.then_some((Source::Cloth(DUST), particles));
+    let flag = (!sample.bare).then_some(flag);
+    flag.into_iter().chain(dust).chain(colliders).collect()
 }
 
 fn dust() -> Vec<[f32; 3]> {

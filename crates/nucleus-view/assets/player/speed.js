@@ -1,0 +1,86 @@
+// The speed of particles, and of points of their surface.
+
+// The speed of each particle of object `k`, in units per second: from its velocity where that is recorded, else from its
+// positions at this frame and the one before. Null where it is not known: a particle has no name, so once particles are
+// born or die, that of the frame before cannot be found.
+export function particleSpeeds(topology, k, { positions, velocities, time, index }, before) {
+  const vectors = velocities[k];
+  if (vectors) {
+    return Float32Array.from({ length: vectors.length / 3 }, (_, p) => (
+      Math.hypot(vectors[3 * p], vectors[3 * p + 1], vectors[3 * p + 2]) || 0
+    ));
+  }
+  const [now, then] = [positions[k], before?.positions[k] ?? null];
+  if (now.length !== 3 * topology.points || (then ? then.length !== now.length : index > 0)) {
+    return null;
+  }
+  const seconds = then && time - before.time;
+  return Float32Array.from({ length: now.length / 3 }, (_, p) => (
+    then ? Math.hypot(...[0, 1, 2].map((axis) => now[3 * p + axis] - then[3 * p + axis])) / seconds || 0 : 0
+  ));
+}
+
+// For each point, the value of the nearest of `others`; 0 where none is near.
+export function nearestValues(points, others, values) {
+  const cells = new Cells(others);
+  return Float32Array.from({ length: points.length / 3 }, (_, p) => {
+    const nearest = cells.nearest([points[3 * p], points[3 * p + 1], points[3 * p + 2]]);
+    return nearest < 0 ? 0 : values[nearest];
+  });
+}
+
+// Rings of cells that are searched round a point; a surface is near its particles.
+const MAX_RINGS = 8;
+
+// Points in the cubes of a grid.
+class Cells {
+  constructor(points) {
+    this.points = points;
+    const axes = [0, 1, 2].map((axis) => points.filter((x, k) => k % 3 === axis && Number.isFinite(x)));
+    this.low = axes.map((all) => all.reduce((a, b) => Math.min(a, b), Infinity));
+    const extent = axes.map((all, axis) => all.reduce((a, b) => Math.max(a, b), -Infinity) - this.low[axis]);
+    const count = points.length / 3;
+    const [long, middle, short] = extent.sort((a, b) => b - a);
+    // About two points in a cell of a filled box, sheet or line.
+    const sizes = [Math.cbrt((2 * long * middle * short) / count), Math.sqrt((2 * long * middle) / count), (2 * long) / count];
+    this.size = Math.max(1e-9, long / 512, ...sizes.filter(Number.isFinite));
+    this.cells = new Map();
+    for (let k = 0; k < count; k += 1) {
+      const key = this.key(...this.cellOf([points[3 * k], points[3 * k + 1], points[3 * k + 2]]));
+      this.cells.has(key) ? this.cells.get(key).push(k) : this.cells.set(key, [k]);
+    }
+  }
+
+  cellOf(at) {
+    return at.map((x, axis) => Math.floor((x - this.low[axis]) / this.size));
+  }
+
+  key(x, y, z) {
+    return ((x + 1024) * 4096 + y + 1024) * 4096 + z + 1024;
+  }
+
+  // The nearest point, or -1 if none is near.
+  nearest(at) {
+    const [x, y, z] = this.cellOf(at);
+    let [found, least] = [-1, Infinity];
+    for (let ring = 0; ring <= MAX_RINGS; ring += 1) {
+      // Every point of this ring is at least ring - 1 cells away.
+      if (least <= ((ring - 1) * this.size) ** 2) {
+        break;
+      }
+      for (let i = -ring; i <= ring; i += 1) {
+        for (let j = -ring; j <= ring; j += 1) {
+          const isSide = Math.max(Math.abs(i), Math.abs(j)) === ring;
+          for (let k = -ring; k <= ring; k += isSide || ring === 0 ? 1 : 2 * ring) {
+            for (const point of this.cells.get(this.key(x + i, y + j, z + k)) ?? []) {
+              const [a, b, c] = [0, 1, 2].map((axis) => this.points[3 * point + axis] - at[axis]);
+              const square = a * a + b * b + c * c;
+              [found, least] = square < least ? [point, square] : [found, least];
+            }
+          }
+        }
+      }
+    }
+    return found;
+  }
+}
