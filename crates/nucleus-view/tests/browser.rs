@@ -272,6 +272,29 @@ fn particles_and_their_surface_take_the_colour_of_speed_particles_that_of_contac
 }
 
 #[test]
+fn a_frame_that_the_other_run_does_not_have_shows_no_difference() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, short] = ["whole", "short"].map(|name| folder.path().join(name).with_extension("mcap"));
+    sample::write(&whole, Sample::default());
+    let mut recorder = sample::begin(&short, Sample::default());
+    (2..=6).for_each(|frame| sample::step(&mut recorder, Sample::default(), frame));
+    recorder.finish().unwrap();
+    let player = serve_both(&whole, &short, 0).unwrap();
+    let net = |shown: &Shown| shown.share(|[red, green, blue]| *blue > 150 && *green > 110 && *red < 150);
+    let both = look_until(&player, chromium, "frame=6&difference=0.05", |shown| net(shown) > 0.005);
+    assert!(net(&both) > 0.005 && !both.page.contains("The other run ends"), "{}", both.page);
+    let says = |shown: &Shown| shown.page.contains("The other run ends at frame 6.");
+    let alone = look_until(&player, chromium, "frame=12&difference=0.05", says);
+    assert!(says(&alone) && alone.page.contains("<dt>Distance, largest</dt><dd>–</dd>"), "{}", alone.page);
+    assert!(
+        10.0 * net(&alone) < net(&both) && alone.cloth() > 0.03,
+        "the cloth keeps its colour: {}",
+        alone.cloth()
+    );
+}
+
+#[test]
 fn a_tilted_ground_plane_is_drawn_as_it_is() {
     let Some(chromium) = chromium() else { return };
     let shown = |sample: Sample| {

@@ -47,6 +47,12 @@ export class Cache {
     return index < 0 ? this.frames.length - 1 : index;
   }
 
+  // The index of the frame with this number; null if the run has none.
+  indexAt(number) {
+    const index = this.indexOf(number);
+    return this.frameNumber(index) === number ? index : null;
+  }
+
   // The report of the solver for a frame; null if there is none.
   async report(index) {
     return (await this.unpack(this.frames[index])).report;

@@ -79,12 +79,14 @@ export function showFigures(report, invalidPoints, other = null) {
   ["figures", "internal-figures"].forEach((id) => byId(id).classList.toggle("compared", Boolean(other)));
 }
 
-// Names both runs, with the median, the 99th percentile and the largest distance between their points.
-export function showComparison(names, scenes, [median, p99, largest]) {
+// Names both runs, with the median, the 99th percentile and the largest distance between their points; null if they have
+// no distance at this frame.
+export function showComparison(names, scenes, distances) {
   const run = (name, scene, className) => [
     element("dt", { textContent: className, className }), element("dd", { textContent: name, title: scene }),
   ];
-  const distance = (label, value) => [element("dt", { textContent: label }), element("dd", { textContent: short(value) })];
+  const [median, p99, largest] = distances?.map(short) ?? ["–", "–", "–"];
+  const distance = (label, value) => [element("dt", { textContent: label }), element("dd", { textContent: value })];
   byId("runs").replaceChildren(...run(names[0], scenes[0], "this"), ...run(names[1] ?? "", scenes[1], "other"));
   byId("distances").replaceChildren(
     ...distance("Distance, median", median), ...distance("Distance, 99 %", p99), ...distance("Distance, largest", largest),
@@ -175,7 +177,7 @@ export function showState(state, message = "", hint = "") {
 // The notices at the top, by what they are about.
 const notices = new Map();
 
-// Shows a notice about the "file", a "frame", the "run" in progress or the "link"; an empty text removes it. Notices about
+// Shows a notice about the "file", a "frame", the "other" run, the "run" in progress or the "link"; an empty text removes it. Notices about
 // other things stay.
 export function showNotice(about, text) {
   notices.set(about, text);

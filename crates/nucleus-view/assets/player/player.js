@@ -34,7 +34,7 @@ export class Player {
   async open(source, other = null) {
     this.timeline?.pause();
     this.timeline = null;
-    ["file", "frame"].forEach((about) => showNotice(about, ""));
+    ["file", "frame", "other"].forEach((about) => showNotice(about, ""));
     showState("loading", `Opening ${source.name}`);
     const onProgress = (share) => showState("loading", `Scanning ${source.name}`, `${Math.round(share * 100)} %`);
     try {
@@ -161,10 +161,11 @@ export class Player {
       this.camera.frames = state.frame - cache.run.start - (state.substep > 0 ? 1 - state.substep / state.substeps : 0);
       scene.moveFloor(floorAt(cache.run, this.camera.frames));
       scene.update(state, twin);
+      scene.areTwinsKnown = Boolean(twin);
       this.series.mark(state.index, this.timeline.marks);
       showTime(cache, state);
       countPoints(scene);
-      showFigures(state.report, scene.invalidPoints, twin?.report);
+      showFigures(state.report, scene.invalidPoints, this.other && (twin?.report ?? {}));
       this.compare(state, twin);
       showContactStates(scene, state.contacts);
       showLegendNote(scene.look.colour === "speed" && scene.objects.some(({ isShown, speeds }) => isShown && speeds === null));
@@ -184,12 +185,12 @@ export class Player {
     this.redraw();
   }
 
-  // The state of the other run at the same time, if there is one.
+  // The state of the other run at the same time; null if there is no other run, or it has no such frame.
   async twinOf(cache, { frame, substep, substeps }) {
-    if (!this.other) {
-      return undefined;
+    const index = this.other?.indexAt(frame) ?? null;
+    if (index === null) {
+      return null;
     }
-    const index = this.other.indexOf(frame);
     const { times } = await this.other.state(index);
     // The same fraction of the frame, because the runs may have recorded different numbers of substeps.
     const timeIndex = substep === 0 ? 0 : Math.max(0, Math.round((substep / substeps) * times) - 1);
@@ -197,14 +198,25 @@ export class Player {
     return { ...(await this.other.state(index, timeIndex)), names };
   }
 
-  // Shows how far the two runs are apart.
+  // Shows how far the two runs are apart. At a frame that the other run does not have there is no distance.
   compare(state, twin) {
-    if (twin) {
-      const sorted = distances(this.scene.objects, state, twin);
-      this.p99 = percentile(sorted, 0.99);
-      const scenes = [this.timeline.cache, this.other].map(({ run }) => run.scene);
-      showComparison(this.names, scenes, [0.5, 0.99, 1].map((share) => percentile(sorted, share)));
+    if (!this.other) {
+      return;
     }
+    const sorted = twin && distances(this.scene.objects, state, twin);
+    this.p99 = sorted ? percentile(sorted, 0.99) : 0;
+    const scenes = [this.timeline.cache, this.other].map(({ run }) => run.scene);
+    showComparison(this.names, scenes, sorted && [0.5, 0.99, 1].map((share) => percentile(sorted, share)));
+    showNotice("other", twin ? "" : this.absence(state.frame));
+  }
+
+  // Why the other run has no state at a frame.
+  absence(frame) {
+    const [first, last] = [0, this.other.frames.length - 1].map((index) => this.other.frameNumber(index));
+    if (frame > last) {
+      return `The other run ends at frame ${last}.`;
+    }
+    return frame < first ? `The other run begins at frame ${first}.` : `The other run has no frame ${frame}.`;
   }
 
   // Sets the scale of the difference to the 99th percentile of the distances of the shown frame; of the run, where the

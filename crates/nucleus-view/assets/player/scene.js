@@ -27,6 +27,7 @@ export class Scene {
     this.empty = this.gl.createVertexArray();
     this.objects = [];
     this.twins = [];
+    this.areTwinsKnown = true; // false at a frame that the other run does not have
     this.selections = [];
     // Colour by "object", "strain", "speed", "difference" or "contacts"; a scalar has a value of full saturation.
     this.look = { wireframe: false, surface: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
@@ -71,11 +72,11 @@ export class Scene {
     this.isShadowStale = true;
   }
 
-  // The visible twins. A twin is hidden with its object, and until its positions are known.
+  // The visible twins. A twin is hidden with its object, until its positions are known, and where its run has no frame.
   get drawnTwins() {
     const isShown = ({ name }) => this.objects.find((object) => object.name === name)?.isShown ?? true;
     const isKnown = ({ mesh }) => Boolean(mesh.points);
-    return this.look.twin === "off" ? [] : this.twins.filter((twin) => isKnown(twin) && isShown(twin));
+    return this.look.twin === "off" || !this.areTwinsKnown ? [] : this.twins.filter((twin) => isKnown(twin) && isShown(twin));
   }
 
   // `stage` is the bounding box of the simulated objects over the run; `floor` is the plane of the floor.
@@ -231,7 +232,7 @@ export class Scene {
       case "speed": return speeds?.length === mesh.count || before !== undefined;
       case "contacts": return ["cloth", "particles"].includes(mesh.kind) && contacts !== undefined;
       // Points correspond only if both runs have the same number.
-      case "difference": return Boolean(twin?.mesh.points) && twin.topology.points === topology.points;
+      case "difference": return this.areTwinsKnown && Boolean(twin?.mesh.points) && twin.topology.points === topology.points;
       default: return false;
     }
   }

@@ -117,8 +117,8 @@ export class Series {
   async read(index) {
     this.known.set(index, await this.cache.report(index).catch(() => null));
     if (this.other) {
-      const twin = this.other.indexOf(this.cache.frameNumber(index));
-      this.knownOther.set(index, await this.other.report(twin).catch(() => null));
+      const twin = this.other.indexAt(this.cache.frameNumber(index));
+      this.knownOther.set(index, twin === null ? null : await this.other.report(twin).catch(() => null));
     }
   }
 
