@@ -251,8 +251,12 @@ fn solve_time_step<R: CompiledReal>(
     let can_touch = is_touchable && solver.contact.is_free.contains(&false);
     solver.state.store_step_start(schedule.h, can_touch, &solver.pool);
     whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
-    predict(&solver.model.cloths, &mut solver.state, now, &solver.contact.is_free, &solver.pool);
-    let Solver { model, state, contact, links, .. } = solver;
+    let Solver { model, state, contact, links, liquids, pool, .. } = solver;
+    for (cloth, liquid) in liquids.iter_mut().enumerate() {
+        liquid.begin_step(cloth, model, state, now);
+    }
+    let seconds_of_forces = |cloth: usize| liquids[cloth].seconds_of_forces(schedule.h);
+    predict(&model.cloths, state, now, &contact.is_free, seconds_of_forces, pool);
     let models = (&model.cloths[..], &model.colliders[..]);
     slide_links(links, models, state, &contact.collider_states, frame, span.to);
     for pass in &schedule.passes {

@@ -32,12 +32,13 @@ pub fn max_speeds<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &F
 }
 
 /// Applies external forces and moves the points of all cloths but those of free points: writes velocity, displacement and
-/// predicted displacement.
+/// predicted displacement. `seconds_of_forces` says for how long external forces act on a cloth in this step.
 pub fn predict<R: Real>(
     cloths: &[ClothModel<R>],
     state: &mut State<R>,
     now: &TimeStep<'_, R>,
     is_free: &[bool],
+    seconds_of_forces: impl Fn(usize) -> f64,
     pool: &ThreadPool,
 ) {
     let predicted = DisjointSlice::new(&mut state.predicted);
@@ -49,7 +50,7 @@ pub fn predict<R: Real>(
         field: &state.field,
     };
     for (index, cloth) in cloths.iter().enumerate().filter(|(index, _)| !is_free[*index]) {
-        let prediction = Prediction::new(columns, cloth, now, index);
+        let prediction = Prediction::new(columns, cloth, now, index, seconds_of_forces(index));
         pool.parallel_for(cloth.blocks.len(), |block| {
             let points = cloth.blocks.range(block);
             // SAFETY: blocks do not overlap.
@@ -71,22 +72,26 @@ pub struct Prediction<'a, R> {
 }
 
 impl<'a, R: Real> Prediction<'a, R> {
-    /// That of a cloth, by its index.
+    /// That of a cloth, by its index. External forces act for so many seconds, from the start of the step.
     pub fn new(
         columns: MotionColumns<'a, R>,
         cloth: &'a ClothModel<R>,
         now: &TimeStep<'_, R>,
         index: usize,
+        seconds: f64,
     ) -> Self {
         let (TimeStep { frame, schedule, .. }, settings) = (*now, &now.frame.cloths[index]);
-        let gravity = gravity_kick(frame.gravity.into(), schedule.h, now.index, now.max_speeds[index]);
-        let air = AirForces::new(frame, settings, cloth.point_mass, schedule.h);
+        let (h, step) = (schedule.h, f64::from(now.index));
+        let steps = [step, step + (seconds / h).round()];
+        let gravity = gravity_kick(frame.gravity.into(), h, steps, now.max_speeds[index]);
+        let air = AirForces::new(frame, settings, cloth.point_mass, seconds);
         let air = air.map(|air| if cloth.has_faces { air } else { air.on_particles(frame.resistance) });
         let forces = ExternalForces {
             gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
-            impulse: <[f64; 3]>::from(settings.local_force * schedule.h).map(R::from_f64),
+            impulse: <[f64; 3]>::from(settings.local_force * seconds).map(R::from_f64),
             air: air.filter(|_| !cloth.triangles.is_empty()),
             air_factors: &[],
+            seconds: R::from_f64(seconds),
             h: R::from_f64(schedule.h),
         };
         Self { columns, cloth, forces }
@@ -109,12 +114,14 @@ impl<'a, R: Real> Prediction<'a, R> {
 struct ExternalForces<'a, R> {
     /// Change of velocity by gravity in m/s.
     gravity: [R; 3],
-    /// Force on every point times the length of the step, in N·s.
+    /// Force on every point times the seconds for which it acts, in N·s.
     impulse: [R; 3],
     /// Drag, lift and wind; none in a vacuum or where no air is felt.
     air: Option<AirForces>,
     /// Vertex maps of the air, one entry per point of the run; empty where there are none.
     air_factors: &'a [AirFactors],
+    /// For how long they act, in seconds.
+    seconds: R,
     /// Length of the step in seconds.
     h: R,
 }
@@ -150,7 +157,7 @@ unsafe fn move_points<R: Real>(
         unsafe { (columns.displacement.run(points.clone()), columns.velocity.run(points.clone())) };
     let four = |[x, y, z]: [R; 3]| R::Lanes::from_array([x, y, z, R::ZERO]);
     let (gravity, impulse, zero) = (four(forces.gravity), four(forces.impulse), R::Lanes::splat(R::ZERO));
-    let h = four([forces.h; 3]);
+    let [h, seconds] = [forces.h, forces.seconds].map(|seconds| four([seconds; 3]));
     let uniform_air = forces.air.map(|air| air.at(&AirFactors::NONE));
     for (k, ((d, v), p)) in displacement.iter_mut().zip(velocity).zip(predicted).enumerate() {
         let x = d.lanes();
@@ -158,7 +165,7 @@ unsafe fn move_points<R: Real>(
         let kick = inverse_mass.choose_by_sign(gravity + impulse * inverse_mass, zero);
         let mut kicked = v.lanes() + kick;
         if let Some(field) = columns.field.get(points.start as usize + k) {
-            kicked = kicked + inverse_mass.choose_by_sign(field.lanes() * h, zero);
+            kicked = kicked + inverse_mass.choose_by_sign(field.lanes() * seconds, zero);
         }
         if let Some(air) = &uniform_air
             && d.0[3] > R::ZERO
@@ -234,12 +241,12 @@ pub fn add_corrections<R: Real>(
 /// Changes of velocity by gravity whose sum is exact.
 ///
 /// A velocity of 8 m/s holds steps of 1e-6 m/s; at 1000 substeps gravity adds 4e-4 each. Each of them rounded the same
-/// way makes the fall up to 0.1 % wrong. Each step therefore adds a whole number of last bits, and carries the
-/// remainder to the next step.
-fn gravity_kick<R: Real>(gravity: [f64; 3], h: f64, step: u32, max_speed: f64) -> [R; 3] {
+/// way makes the fall up to 0.1 % wrong. Each kick, from one step to another, therefore adds a whole number of last bits,
+/// and the next one takes the remainder.
+fn gravity_kick<R: Real>(gravity: [f64; 3], h: f64, [from, to]: [f64; 2], max_speed: f64) -> [R; 3] {
     let grid = last_bit::<R>(max_speed);
     let whole = |sum: f64| (sum / grid).round() * grid;
-    gravity.map(|g| R::from_f64(whole(g * h * f64::from(step + 1)) - whole(g * h * f64::from(step))))
+    gravity.map(|g| R::from_f64(whole(g * h * to) - whole(g * h * from)))
 }
 
 /// The spacing of floating-point numbers about as large as `x`.
@@ -258,7 +265,11 @@ mod tests {
     fn gravity_kicks_add_up_to_gravity_times_time_for_any_number_of_steps() {
         for steps in [1u32, 20, 1000, 24_000] {
             let h = 1.0 / f64::from(steps);
-            let sum = (0..steps).fold(0.0f32, |v, k| v + gravity_kick::<f32>([0.0, -9.8, 0.0], h, k, 9.8)[1]);
+            let kick = |k: u32| {
+                let steps = [k, k + 1].map(f64::from);
+                gravity_kick::<f32>([0.0, -9.8, 0.0], h, steps, 9.8)[1]
+            };
+            let sum = (0..steps).fold(0.0f32, |v, k| v + kick(k));
             assert!((f64::from(sum) / -9.8 - 1.0).abs() < 1e-7, "{steps}: {sum}");
         }
     }

@@ -52,7 +52,7 @@ impl<'a, R: Real> FreePass<'a, R> {
             model,
             contact,
             now,
-            prediction: Prediction::new(columns, &model.cloths[cloth], now, cloth),
+            prediction: Prediction::new(columns, &model.cloths[cloth], now, cloth, h),
             anchors: &state.anchor,
             plane: contact.ground.in_step(now.span).zip(contact.ground_materials[cloth]),
             has_colliders: contact.has_collider_material(cloth),

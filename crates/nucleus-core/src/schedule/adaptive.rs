@@ -10,7 +10,7 @@
 
 use nalgebra::Vector3;
 
-use crate::constraints::liquid;
+use crate::constraints::liquid::time_step::splits as liquid_splits;
 use crate::contact::collider::ColliderState;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, ResistanceModel};
@@ -62,7 +62,7 @@ pub fn splits<R: Real>(
             }
         }
     }
-    splits.max(liquid::splits(model, state, frame, schedule.h)).ceil().min(MAX_SPLITS) as u32
+    splits.max(liquid_splits(model, state, frame, schedule.h)).ceil().min(MAX_SPLITS) as u32
 }
 
 /// The largest strain of any link of a cloth.

@@ -1,7 +1,7 @@
 //! Liquids: particles with constant volume, viscosity and surface tension (position-based fluids: Macklin &
 //! Müller 2013).
 //!
-//! A pass comes first in each time step, on the predicted positions: neighbours, then viscosity and surface tension, then
+//! A pass comes first in each time step of the liquid ([`time_step`]), on the predicted positions: neighbours, then viscosity and surface tension, then
 //! density as a constraint. Contact follows, and corrections become velocities as those of all constraints do. Inside,
 //! lengths are in rest distances, from where its first particle begins the frame.
 //!
@@ -17,6 +17,7 @@
 //! | density, and the solver of pressure | [`density`] |
 //! | ground plane, colliders and cloth beside a liquid | [`walls`] |
 //! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
+//! | how long its time steps are | [`time_step`] |
 
 pub mod density;
 pub mod grid;
@@ -25,6 +26,7 @@ pub mod near;
 pub mod neighbours;
 pub mod pair;
 pub mod surface_tension;
+pub mod time_step;
 pub mod viscosity;
 pub mod walls;
 
@@ -38,11 +40,12 @@ use crate::model::Model;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::population::Population;
-use crate::schedule::StepInterval;
+use crate::schedule::{StepInterval, TimeStep};
 use crate::state::State;
 
 use density::{Density, Load};
 use neighbours::{CHUNK, Neighbours, chunk_range};
+use time_step::LiquidInterval;
 use viscosity::Viscosity;
 use walls::{Corner, Material, Plane, Walls};
 
@@ -50,10 +53,6 @@ use walls::{Corner, Material, Plane, Walls};
 const RECOVERY: f32 = 10.0;
 /// Largest share of it that goes in a time step.
 const MAX_RECOVERY: f32 = 0.5;
-/// Distance that particles may move in a time step relative to each other, in rest distances.
-const MAX_ADVANCE: f64 = 0.4;
-/// The same by gravity alone from rest.
-const MAX_FALL: f64 = 0.004;
 /// Speed of sound in m/s of a liquid with an `incompressibility` of one half.
 const SOFT_SOUND: f64 = 10.0;
 
@@ -77,6 +76,8 @@ pub struct LiquidSolver {
     density_error: f64,
     /// The births and deaths of its particles that the columns by particle follow.
     topology: u64,
+    /// The time step that it is in; `None` for a cloth that is no liquid.
+    interval: Option<LiquidInterval>,
 }
 
 /// One time step of one liquid.
@@ -87,15 +88,41 @@ struct LiquidStep {
     origin: Vector3<f64>,
     /// Inverse mass of its first particle in 1/kg.
     inverse_mass: f64,
+    /// Its length in seconds, and how much of it is after the time step of the nucleus in which it starts.
     h: f64,
+    ahead: f64,
     span: StepInterval,
 }
 
 impl LiquidSolver {
     /// Begins a frame.
     pub fn begin_frame(&mut self) {
+        self.interval = None;
         self.pressure.clear();
         self.density_error = 0.0;
+    }
+
+    /// Begins a time step of the nucleus; nothing changes where the cloth, by its index, is no liquid.
+    pub fn begin_step<R: Real>(
+        &mut self,
+        cloth: usize,
+        model: &Model<R>,
+        state: &State<R>,
+        now: &TimeStep<'_, R>,
+    ) {
+        let TimeStep { frame, schedule, span, .. } = *now;
+        let Some(settings) = frame.cloths[cloth].liquid else { return };
+        let wanted = || match time_step::is_beside_cloth(model, state, frame, cloth, &settings) {
+            true => schedule.h,
+            false => time_step::wanted(model, state, frame, cloth, &settings),
+        };
+        let interval = self.interval.unwrap_or_default();
+        self.interval = Some(interval.next(schedule, frame.duration, span, wanted));
+    }
+
+    /// For how many seconds external forces act on the cloth in this time step of the nucleus of `h` seconds.
+    pub fn seconds_of_forces(&self, h: f64) -> f64 {
+        self.interval.map_or(h, |interval| interval.starts)
     }
 
     /// Mean excess of density of its particles; 0 where there is no liquid.
@@ -115,24 +142,9 @@ pub struct LiquidScene<'a, R: Real> {
     pub frame: &'a FrameInput,
 }
 
-/// The number of parts that a time step of `h` seconds is split into, so that no particle passes another unseen.
-pub fn splits<R: Real>(model: &Model<R>, state: &State<R>, frame: &FrameInput, h: f64) -> f64 {
-    let of = |(cloth, settings): (usize, Liquid)| {
-        let rows = model.cloths[cloth].points();
-        let velocities = &state.velocity[rows.start as usize..rows.end as usize];
-        let velocity = |at: usize| Vector3::from(velocities[at].xyz().map(R::to_f64));
-        let mean = (0..velocities.len()).map(velocity).sum::<Vector3<f64>>() / velocities.len().max(1) as f64;
-        let squares = (0..velocities.len()).map(|at| (velocity(at) - mean).norm_squared());
-        let fastest = squares.fold(0.0, f64::max).sqrt();
-        let fall = (frame.gravity.norm() / (MAX_FALL * settings.spacing)).sqrt();
-        (fastest / (MAX_ADVANCE * settings.spacing)).max(fall) * h
-    };
-    let liquids = frame.cloths.iter().enumerate();
-    liquids.filter_map(|(cloth, settings)| Some((cloth, settings.liquid?))).map(of).fold(1.0, f64::max)
-}
-
 impl LiquidSolver {
-    /// One pass over a liquid, which is a cloth by its index, in a time step of `h` seconds.
+    /// One pass over a liquid, which is a cloth by its index, in a time step of the nucleus of `h` seconds. Does nothing
+    /// where the time step of the liquid goes on.
     pub fn relax<R: Real>(
         &mut self,
         cloth: usize,
@@ -144,6 +156,7 @@ impl LiquidSolver {
     ) {
         let rows = scene.model.cloths[cloth].points();
         let Some(settings) = scene.frame.cloths[cloth].liquid.filter(|_| !rows.is_empty()) else { return };
+        let Some(interval) = self.interval.filter(|interval| interval.starts > 0.0) else { return };
         // A birth and a death in one frame leave the number of particles as it is.
         let topology = state.population_of(cloth).map_or(0, Population::topology);
         let begins = self.pressure.len() != rows.len() || self.topology != topology;
@@ -153,11 +166,20 @@ impl LiquidSolver {
             self.walls.forget();
         }
         let inverse_mass = state.inverse_mass[rows.start as usize].to_f64();
-        let step = LiquidStep { cloth, settings, origin: self.origin, inverse_mass, h, span };
+        let (ahead, span) = (interval.starts - h, StepInterval { to: interval.end, ..span });
+        let step = LiquidStep {
+            cloth,
+            settings,
+            origin: self.origin,
+            inverse_mass,
+            h: interval.starts,
+            ahead,
+            span,
+        };
         if begins {
             self.begin(scene, state, &step, pool);
         }
-        self.gather(scene, state, &step, 0.0);
+        self.gather(scene, state, &step, step.ahead);
         self.find_walls(scene, state, &step);
         self.neighbours.find(&self.positions, &self.walls, pool);
         self.load(rows.start, state, &step, pool);
@@ -174,7 +196,7 @@ impl LiquidSolver {
         step: &LiquidStep,
         pool: &ThreadPool,
     ) {
-        self.gather(scene, state, step, step.h);
+        self.gather(scene, state, step, step.ahead - step.h);
         self.find_walls(scene, state, step);
         self.neighbours.find(&self.positions, &self.walls, pool);
         self.pressure.clear();
@@ -186,16 +208,22 @@ impl LiquidSolver {
         }
     }
 
-    /// Takes up the positions of the particles `back` seconds ago.
-    fn gather<R: Real>(&mut self, scene: LiquidScene<'_, R>, state: &State<R>, step: &LiquidStep, back: f64) {
-        let (per_metre, back) = (1.0 / step.settings.spacing, R::from_f64(back));
+    /// Takes up the positions of the particles in `ahead` seconds, at constant velocity.
+    fn gather<R: Real>(
+        &mut self,
+        scene: LiquidScene<'_, R>,
+        state: &State<R>,
+        step: &LiquidStep,
+        ahead: f64,
+    ) {
+        let (per_metre, ahead) = (1.0 / step.settings.spacing, R::from_f64(ahead));
         self.positions.clear();
         self.positions.extend(scene.model.cloths[step.cloth].points().map(|row| {
             let row = row as usize;
             let (moved, velocity) = (state.displacement[row].xyz(), state.velocity[row].xyz());
             std::array::from_fn(|axis| {
                 let at = state.anchor[row][axis] - step.origin[axis];
-                ((at + (moved[axis] - velocity[axis] * back).to_f64()) * per_metre) as f32
+                ((at + (moved[axis] + velocity[axis] * ahead).to_f64()) * per_metre) as f32
             })
         }));
     }
@@ -344,7 +372,7 @@ impl LiquidSolver {
     /// Solves for the pressure, and moves the particles and the cloth beside them.
     fn solve<R: Real>(&mut self, first: u32, state: &mut State<R>, step: &LiquidStep, pool: &ThreadPool) {
         let Self { neighbours, walls, density, pressure, excess, loads, .. } = self;
-        let LiquidStep { settings, h, .. } = *step;
+        let LiquidStep { settings, h, ahead, .. } = *step;
         let softness = 1.0 - settings.incompressibility.clamp(0.0, 1.0);
         // The pressure over density is c² times the excess, with the speed of sound c.
         let sound = SOFT_SOUND * settings.incompressibility / softness.max(1e-9);
@@ -352,7 +380,8 @@ impl LiquidSolver {
         let compliance = if softness > 0.0 { (compliance * compliance).min(1e12) as f32 } else { 0.0 };
         density.solve(neighbours, loads, walls, compliance, pool);
         let displacement = &mut state.displacement;
-        let metres = |moved: f32| R::from_f64(f64::from(moved) * settings.spacing);
+        let in_step = (h - ahead) / h;
+        let metres = |moved: f32| R::from_f64(f64::from(moved) * settings.spacing * in_step);
         let mut sum = 0.0f64;
         for (at, &particle) in neighbours.grid.order().iter().enumerate() {
             let row = &mut displacement[(first + particle) as usize];
