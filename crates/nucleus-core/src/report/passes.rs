@@ -5,6 +5,7 @@ use crate::constraints::angular_momentum::keeps_angular_momentum;
 use crate::constraints::damp::Damping;
 use crate::constraints::link::pass::rows_of_pass;
 use crate::constraints::link::sweep::LinkSweep;
+use crate::constraints::liquid::time_step::steps_in_frame;
 use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
 use crate::input::fields::Field;
@@ -25,6 +26,19 @@ use crate::schedule::sweep_direction::alternating_cloths;
 use crate::schedule::{Effect, Pass, Schedule, WholeEffect};
 use crate::solver::Solver;
 
+/// The pass over liquids: the mean of their time steps, as they are now.
+fn liquid_pass<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> PassCost {
+    let (model, state) = (&solver.model, &solver.state);
+    let (mut rows, mut particle_steps) = (0, 0.0);
+    for (cloth, settings) in frame.cloths.iter().enumerate() {
+        let Some(settings) = &settings.liquid else { continue };
+        let points = model.cloths[cloth].points().len();
+        rows += points;
+        particle_steps += points as f64 * steps_in_frame(model, state, frame, schedule, cloth, settings);
+    }
+    PassCost { name: "liquid", rows, sweeps: particle_steps / rows.max(1) as f64 }
+}
+
 /// The cost of every pass of a frame; see [`Solver::passes`].
 pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> {
     let frame = &*sanitize(frame, solver).0;
@@ -42,7 +56,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     for name in ["stretch", "compress", "shear", "bend"] {
         passes.push(sweeps_of(&solver.model.cloths, name, &schedule));
     }
-    let is_free = alternating_cloths(&solver.contact, &solver.links, frame);
+    let is_free = alternating_cloths(&solver.model.cloths, &solver.contact, &solver.links, frame);
     let kept = schedule.passes.iter().filter_map(|pass| match pass {
         Pass::AngularMomentum(cloth) => Some(*cloth),
         _ => None,
@@ -59,9 +73,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         |of: usize| frame.pins.iter().filter(move |pin| pin.cloth.index() == of).map(|pin| pin.point);
     let tethers = tethered.map(|(of, tethers)| tethers.count(&solver.model.cloths[of], pinned(of))).sum();
     passes.push(PassCost { name: "tethers", rows: tethers, sweeps: f64::from(steps) });
-    let liquid = (0..frame.cloths.len()).filter(|&cloth| frame.cloths[cloth].liquid.is_some());
-    let liquid = liquid.map(|cloth| solver.model.cloths[cloth].points().len()).sum();
-    passes.push(PassCost { name: "liquid", rows: liquid, sweeps: f64::from(steps) });
+    passes.push(liquid_pass(solver, frame, &schedule));
     passes.extend(whole_passes(solver, frame, &schedule));
     let pass = |sweep: &LinkSweep<R>| {
         let own = |pass: &&Pass| matches!(pass, Pass::Links(at) if schedule.links[*at].constraint == sweep.constraint);

@@ -73,6 +73,25 @@ pub fn splits<R: Real>(model: &Model<R>, state: &State<R>, frame: &FrameInput, h
     parts.map(|longest| h / longest).fold(1.0, f64::max)
 }
 
+/// The number of time steps of a liquid in a frame, as it is at the start of the frame.
+pub fn steps_in_frame<R: Real>(
+    model: &Model<R>,
+    state: &State<R>,
+    frame: &FrameInput,
+    schedule: &Schedule<R>,
+    cloth: usize,
+    settings: &Liquid,
+) -> f64 {
+    let steps = f64::from(schedule.substeps * schedule.steps);
+    let splits = (schedule.h / longest(model, state, frame, (cloth, settings), MAX_ADVANCE)).ceil();
+    if splits > 1.0 || is_beside_cloth(model, state, frame, cloth, settings) {
+        return steps * splits.max(1.0);
+    }
+    let wanted = || wanted(model, state, frame, cloth, settings);
+    let first = LiquidInterval::default().next(schedule, frame.duration, schedule.span(0), wanted);
+    (frame.duration / first.starts).round()
+}
+
 /// The length in seconds that a time step of a liquid should have.
 pub fn wanted<R: Real>(
     model: &Model<R>,
