@@ -156,7 +156,7 @@ fn solve_substeps<R: CompiledReal>(
     observer: &mut dyn StepObserver,
 ) -> ControlFlow<()> {
     let max_speeds = max_speeds(&solver.model.cloths, &solver.state, frame);
-    let alternates = alternating_cloths(&solver.contact, &solver.links, frame);
+    let alternates = alternating_cloths(&solver.model.cloths, &solver.contact, &solver.links, frame);
     for substep in 1..=schedule.substeps {
         observer.enter(Stage::Normals);
         begin_substep(solver, frame, schedule, substep);
