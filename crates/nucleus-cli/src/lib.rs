@@ -14,11 +14,11 @@
 //! | how a scene or a cache is opened, and refused            | `files.rs`               |
 //! | where results are stored between commands                | `quality.rs`             |
 
+mod budget_hints;
 mod commands;
 mod diagnostics;
 mod figures;
 mod files;
-mod hanging;
 mod initial_state;
 mod options;
 mod output;

@@ -19,7 +19,7 @@ use crate::output::say;
 use crate::process::Outcome;
 use crate::recording::{self, RecordOptions};
 use crate::run_loop::{Finished, Recording, RunLoop};
-use crate::{diagnostics, files, hanging, process, quality};
+use crate::{budget_hints, diagnostics, files, process, quality};
 
 /// Default number of frames from one checkpoint to the next: two seconds of film. A checkpoint takes about as many bytes
 /// as twenty frames.
@@ -149,9 +149,10 @@ impl Run {
                 self.program_of(&scene, wanted).map(|(program, setting)| (program, Some(setting)))?
             }
         };
-        hanging::budgets(&program).iter().for_each(|line| say!("{line}"));
+        budget_hints::budgets(&program).iter().for_each(|line| say!("{line}"));
+        budget_hints::liquid_steps(&program).iter().for_each(|line| say!("{line}"));
         if self.scalar == Scalar::F32 {
-            hanging::unresolved_steps(&program).iter().for_each(|line| say!("{line}"));
+            budget_hints::unresolved_steps(&program).iter().for_each(|line| say!("{line}"));
         }
         process::listen_for_signals()?;
         let facts = self.facts(setting, if is_changed { &read } else { &program })?;

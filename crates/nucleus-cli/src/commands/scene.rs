@@ -8,7 +8,7 @@ use nucleus_cache::atomic_file;
 use nucleus_graph::scene::{Scene, format_scene, read_scene_text};
 
 use crate::process::Outcome;
-use crate::{diagnostics, files, hanging, output};
+use crate::{budget_hints, diagnostics, files, output};
 
 /// Reads and compiles a scene and prints all its errors and warnings, and hints at cloth whose budget is too small.
 #[derive(Debug, Args)]
@@ -26,8 +26,11 @@ impl Check {
             None => Ok(Outcome::InvalidInput),
             Some((_, program, _)) => {
                 output::report(&format!("`{}` can run: {count}\n", self.scene.display()));
-                hanging::budgets(&program).iter().for_each(|line| output::report(&format!("{line}\n")));
-                hanging::hints(&program).iter().for_each(|hint| output::report(&format!("{hint}\n")));
+                budget_hints::budgets(&program).iter().for_each(|line| output::report(&format!("{line}\n")));
+                budget_hints::hints(&program).iter().for_each(|hint| output::report(&format!("{hint}\n")));
+                budget_hints::liquid_steps(&program)
+                    .iter()
+                    .for_each(|hint| output::report(&format!("{hint}\n")));
                 Ok(Outcome::Success)
             }
         }

@@ -33,6 +33,15 @@ const CLOTH_MARGIN: f64 = 1.0;
 /// Times closer than this, in shares of the frame, are the same.
 const SAME_TIME: f64 = 1e-9;
 
+impl Liquid {
+    /// The longest time step of the liquid at rest in seconds, where external forces accelerate it by so many m/s².
+    pub fn longest_step_at_rest(&self, acceleration: f64) -> f64 {
+        let fall = acceleration / (MAX_FALL * self.spacing);
+        let capillary = self.surface_tension / self.spacing.powi(3);
+        1.0 / fall.sqrt().max(capillary.sqrt() / MAX_CAPILLARY_PHASE)
+    }
+}
+
 /// The time step that a liquid is in.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LiquidInterval {
@@ -119,10 +128,8 @@ fn longest<R: Real>(
     let fields = state.field.get(rows).unwrap_or_default().iter();
     let field = fields.map(|row| Vector3::from(row.xyz().map(R::to_f64)).norm_squared()).fold(0.0, f64::max);
     let force = frame.cloths[cloth].local_force.norm() / model.cloths[cloth].point_mass;
-    let fall = (frame.gravity.norm() + field.sqrt() + force) / (MAX_FALL * settings.spacing);
-    let capillary = settings.surface_tension / settings.spacing.powi(3);
-    let rate = (fastest / (advance * settings.spacing)).max(fall.sqrt());
-    1.0 / rate.max(capillary.sqrt() / MAX_CAPILLARY_PHASE)
+    let at_rest = settings.longest_step_at_rest(frame.gravity.norm() + field.sqrt() + force);
+    at_rest.min(advance * settings.spacing / fastest)
 }
 
 /// Whether other cloth is near a liquid that may collide with it. Its links do not wait for the liquid's next time step.

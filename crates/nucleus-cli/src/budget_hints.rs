@@ -1,7 +1,7 @@
 //! Hints at cloth that hangs by pins or is inflated and that its budget leaves stretched, before a run; the budget that
-//! `autoEvaluations` chose; and budgets beyond what single precision resolves.
+//! `autoEvaluations` chose; budgets beyond what single precision resolves; and liquids that need many time steps.
 
-use nucleus_core::{COUNT_PERIOD, FrameInput, ResistanceModel};
+use nucleus_core::{COUNT_PERIOD, FrameInput, Liquid, ResistanceModel};
 use nucleus_graph::compile::budget::{Hanging, Inflated, MAX_BUDGET, hanging};
 use nucleus_graph::compile::{ObjectKind, Program};
 
@@ -94,6 +94,33 @@ pub fn unresolved_steps(program: &Program) -> Vec<String> {
     program.nuclei().iter().zip(program.first_inputs()).filter_map(warning).collect()
 }
 
+/// Time steps of a liquid in 1/24 s from which on there is a hint.
+const MANY_STEPS: f64 = 400.0;
+
+/// Hints at the liquids that take many time steps even at rest, one line each.
+pub fn liquid_steps(program: &Program) -> Vec<String> {
+    let mut hints = Vec::new();
+    for (nucleus, input) in program.nuclei().iter().zip(program.first_inputs()) {
+        let liquids = nucleus.cloths().zip(&input.cloths);
+        for (id, liquid) in liquids.filter_map(|(id, settings)| Some((id, settings.liquid?))) {
+            let steps = |liquid: &Liquid| COUNT_PERIOD / liquid.longest_step_at_rest(input.gravity.norm());
+            let is_it = |kind: &ObjectKind| matches!(kind, ObjectKind::Cloth(cloth) if cloth.0 == id);
+            let object = program.objects().iter().find(|object| is_it(&object.kind));
+            let Some(object) = object.filter(|_| steps(&liquid) >= MANY_STEPS) else { continue };
+            let calm = Liquid { surface_tension: 0.0, ..liquid };
+            let tension = if steps(&calm) < steps(&liquid) { ", or no `surfaceTension`," } else { "" };
+            hints.push(format!(
+                "hint: `{}` takes about {} time steps in 1/24 s: its particles are {} mm apart; larger ones{tension} take \
+                 fewer",
+                object.name,
+                figures::number((steps(&liquid) / 10.0).round() * 10.0),
+                figures::number((liquid.spacing * 1e5).round() / 100.0),
+            ));
+        }
+    }
+    hints
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -155,5 +182,26 @@ mod tests {
             assert_eq!(hints_of(nucleus, cloth, two), [""; 0], "{nucleus}, {cloth}");
         }
         assert_eq!(hints_of("evaluations: 96", "pointMass: 0.2", "\"curtain.vtx[0:64]\""), [""; 0]);
+    }
+
+    #[test]
+    fn a_liquid_of_small_drops_gets_a_hint_with_its_time_steps() {
+        let hints = |radius: f64, tension: f64| {
+            let text = format!(
+                "Scene(time: (start: 1, end: 9, fps: 24), nodes: {{
+                    \"nucleus\": nucleus(spaceScale: 0.001),
+                    \"water\": nParticle(enableSPH: true, radius: {radius}, surfaceTension: {tension},
+                        minimumCorner: (0, 0, 0), maximumCorner: (4, 4, 4)),
+                }})"
+            );
+            let scene = read_scene_text(&text, Path::new("water.ron")).expect("a scene").0;
+            liquid_steps(&compile(&scene).unwrap_or_else(|found| panic!("{found:?}")))
+        };
+        // Particles are 1.28 radii apart; √(7.3e-5 / 1.28e-4³) / 0.2 / 24 = 1230.
+        let tiny = "hint: `water` takes about 1230 time steps in 1/24 s: its particles are 0.13 mm apart; larger ones, or no \
+                    `surfaceTension`, take fewer";
+        assert_eq!(hints(0.1, 0.073), [tiny]);
+        assert_eq!(hints(0.1, 0.0), [""; 0]);
+        assert_eq!(hints(1.0, 0.073), [""; 0]);
     }
 }
