@@ -16,6 +16,7 @@ use crate::input::validation::{InvalidInput, LastPositions, sanitize};
 use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
+use crate::model::cloth_lists::compile_cloth;
 use crate::model::vertex_maps::VertexMaps;
 use crate::model::{ClothModel, ColliderModel, Model};
 use crate::output::{ContactState, ParticleAge, ParticleLook, StateView, StepObserver};
@@ -137,7 +138,7 @@ impl<R: Real> Solver<R> {
         let mut models: Vec<ClothModel<R>> = Vec::with_capacity(cloths.len());
         for (cloth, order) in cloths.iter().zip(&link_orders) {
             let first = models.last().map_or(0, |last| last.blocks.end());
-            models.push(ClothModel::new(cloth, order, first, !colliders.is_empty() || self_collides));
+            models.push(compile_cloth(cloth, order, first, !colliders.is_empty() || self_collides));
         }
         let mut state = State::new(&cloths, &models);
         let pool = ThreadPool::new(threads);

@@ -11,6 +11,7 @@ use crate::math::Real;
 use crate::model::vertex_maps::{VertexMaps, mean, mean_share};
 
 use crate::model::blocks::Blocks;
+use crate::model::order::Order;
 use crate::model::rows::{Row, RowList};
 
 /// The strength maps of the lists of a cloth; a list without a map is empty.
@@ -90,13 +91,20 @@ impl AirFactors {
 pub struct MapReader<'a> {
     /// In the order of the mesh.
     pub maps: &'a VertexMaps,
-    /// The point of the mesh at a row of the columns.
-    pub point: &'a dyn Fn(u32) -> usize,
+    /// Between points of the mesh and places.
+    pub order: &'a Order,
+    /// The first row of the cloth in the columns.
+    pub first: u32,
     /// The blocks of the cloth.
     pub blocks: &'a Blocks,
 }
 
 impl MapReader<'_> {
+    /// The point of the mesh at a row of the columns.
+    pub fn point(&self, row: u32) -> usize {
+        self.order.user((row - self.first) as usize)
+    }
+
     /// The map of links.
     pub fn links<R: Real>(&self, rows: &[LinkRow<R>], levels: &[u32]) -> RowList<StrengthGroup<R>> {
         let [above, below] = [&self.maps.stretch, &self.maps.compression];
@@ -115,7 +123,7 @@ impl MapReader<'_> {
         if damp.is_empty() {
             return RowList::default();
         }
-        let factor = |row: &LinkRow<R>| mean(damp, row.ends.map(|end| (self.point)(end)).into_iter());
+        let factor = |row: &LinkRow<R>| mean(damp, row.ends.map(|end| self.point(end)).into_iter());
         let row = |row: &LinkRow<R>| StrengthRow::new(row.ends, [factor(row); 2]);
         RowList::in_levels(&rows.iter().map(row).collect::<Vec<_>>(), levels, self.blocks)
     }
@@ -141,7 +149,7 @@ impl MapReader<'_> {
         }
         let row = |row: &HingeRow<R, N>| {
             let points: [u32; N] = std::array::from_fn(|k| row.point(k));
-            StrengthRow::new(points, maps.map(|map| mean(map, points.map(|p| (self.point)(p)).into_iter())))
+            StrengthRow::new(points, maps.map(|map| mean(map, points.map(|p| self.point(p)).into_iter())))
         };
         RowList::new(&rows.iter().map(row).collect::<Vec<_>>(), self.blocks)
     }
@@ -158,10 +166,10 @@ impl MapReader<'_> {
             tangential_drag: at(tangential_drag, point),
             lift: at(lift, point) / at(mass, point),
         };
-        places.map(|place| factors((self.point)(place))).collect()
+        places.map(|place| factors(self.point(place))).collect()
     }
 
     fn mean_factor<const N: usize>(&self, column: &[f64], places: [u32; N]) -> f64 {
-        mean_share(column, places.map(|place| (self.point)(place)).into_iter())
+        mean_share(column, places.map(|place| self.point(place)).into_iter())
     }
 }
