@@ -3,7 +3,7 @@
 
 use nucleus_core::{COUNT_PERIOD, FrameInput, Liquid, ResistanceModel};
 use nucleus_graph::compile::budget::{Hanging, Inflated, MAX_BUDGET, hanging};
-use nucleus_graph::compile::{ObjectKind, Program};
+use nucleus_graph::compile::{Object, ObjectKind, Program};
 
 use crate::figures;
 
@@ -17,8 +17,7 @@ pub fn hints(program: &Program) -> Vec<String> {
     let mut hints = Vec::new();
     for (at, (nucleus, input)) in program.nuclei().iter().zip(program.first_inputs()).enumerate() {
         for (index, id) in nucleus.cloths().enumerate() {
-            let own = |kind: &ObjectKind| matches!(kind, ObjectKind::Cloth(cloth) if cloth.0 == id);
-            let name = program.objects().iter().find(|object| own(&object.kind)).map(|object| &object.name);
+            let name = name_of(program, id);
             let found =
                 hanging(index, nucleus.model().cloths(), &input).filter(|found| found.strain >= MIN_STRAIN);
             hints.extend(name.zip(found).map(|(name, found)| hint(&found, name)));
@@ -29,6 +28,12 @@ pub fn hints(program: &Program) -> Vec<String> {
         }
     }
     hints
+}
+
+/// The name of a cloth.
+fn name_of(program: &Program, id: u32) -> Option<&str> {
+    let own = |object: &&Object| matches!(object.kind, ObjectKind::Cloth(cloth) if cloth.0 == id);
+    program.objects().iter().find(own).map(|object| object.name.as_str())
 }
 
 /// `hint: ...`. The strain falls with the square of the evaluations.
@@ -104,15 +109,12 @@ pub fn liquid_steps(program: &Program) -> Vec<String> {
         let liquids = nucleus.cloths().zip(&input.cloths);
         for (id, liquid) in liquids.filter_map(|(id, settings)| Some((id, settings.liquid?))) {
             let steps = |liquid: &Liquid| COUNT_PERIOD / liquid.longest_step_at_rest(input.gravity.norm());
-            let is_it = |kind: &ObjectKind| matches!(kind, ObjectKind::Cloth(cloth) if cloth.0 == id);
-            let object = program.objects().iter().find(|object| is_it(&object.kind));
-            let Some(object) = object.filter(|_| steps(&liquid) >= MANY_STEPS) else { continue };
+            let Some(name) = name_of(program, id).filter(|_| steps(&liquid) >= MANY_STEPS) else { continue };
             let calm = Liquid { surface_tension: 0.0, ..liquid };
             let tension = if steps(&calm) < steps(&liquid) { ", or no `surfaceTension`," } else { "" };
             hints.push(format!(
-                "hint: `{}` takes about {} time steps in 1/24 s: its particles are {} mm apart; larger ones{tension} take \
+                "hint: `{name}` takes about {} time steps in 1/24 s: its particles are {} mm apart; larger ones{tension} take \
                  fewer",
-                object.name,
                 figures::number((steps(&liquid) / 10.0).round() * 10.0),
                 figures::number((liquid.spacing * 1e5).round() / 100.0),
             ));

@@ -26,8 +26,8 @@ pub(crate) struct PartPaths {
     final_path: PathBuf,
 }
 
-/// Creates the temporary file beside the file that `path` names. With `replace` it may overwrite an older cache, and the partial cache of a
-/// killed run.
+/// Creates the temporary file beside the file that `path` names. With `replace` it may overwrite an older cache, and the
+/// partial cache of a killed run.
 pub(crate) fn create(path: &Path, replace: bool) -> Result<PartFile, RecordError> {
     check_existing(path, replace)?;
     let partial = part_path(path);

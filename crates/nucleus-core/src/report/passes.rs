@@ -5,7 +5,7 @@ use crate::constraints::angular_momentum::keeps_angular_momentum;
 use crate::constraints::damp::Damping;
 use crate::constraints::link::pass::rows_of_pass;
 use crate::constraints::link::sweep::LinkSweep;
-use crate::constraints::liquid::time_step::steps_in_frame;
+use crate::constraints::liquid::time_step::LiquidMotion;
 use crate::contact::cloth::pass::cloth_materials_of;
 use crate::contact::material::ContactMaterial;
 use crate::input::fields::Field;
@@ -25,19 +25,6 @@ use crate::particles::slowing::kept_share;
 use crate::schedule::sweep_direction::alternating_cloths;
 use crate::schedule::{Effect, Pass, Schedule, WholeEffect};
 use crate::solver::Solver;
-
-/// The pass over liquids: the mean of their time steps, as they are now.
-fn liquid_pass<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> PassCost {
-    let (model, state) = (&solver.model, &solver.state);
-    let (mut rows, mut particle_steps) = (0, 0.0);
-    for (cloth, settings) in frame.cloths.iter().enumerate() {
-        let Some(settings) = &settings.liquid else { continue };
-        let points = model.cloths[cloth].points().len();
-        rows += points;
-        particle_steps += points as f64 * steps_in_frame(model, state, frame, schedule, cloth, settings);
-    }
-    PassCost { name: "liquid", rows, sweeps: particle_steps / rows.max(1) as f64 }
-}
 
 /// The cost of every pass of a frame; see [`Solver::passes`].
 pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> {
@@ -117,6 +104,20 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
     passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
     passes
+}
+
+/// The pass over liquids: the mean number of their time steps, as they are now.
+fn liquid_pass<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> PassCost {
+    let (model, state) = (&solver.model, &solver.state);
+    let (mut rows, mut particle_steps) = (0, 0.0);
+    for (cloth, settings) in frame.cloths.iter().enumerate() {
+        let Some(settings) = &settings.liquid else { continue };
+        let points = model.cloths[cloth].points().len();
+        rows += points;
+        let motion = LiquidMotion { model, state, frame, cloth, settings };
+        particle_steps += points as f64 * motion.steps_in_frame(schedule);
+    }
+    PassCost { name: "liquid", rows, sweeps: particle_steps / rows.max(1) as f64 }
 }
 
 /// The cost of effects on whole cloths, of deformation that stays, and of gusts.

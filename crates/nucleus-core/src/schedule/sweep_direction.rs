@@ -10,8 +10,8 @@ use crate::input::frame::{FrameInput, Pressure};
 use crate::math::Real;
 use crate::model::ClothModel;
 
-/// Whether each cloth moves freely: no closed pressure, no pin, no link to a fixed place, and no contact in the last frame, neither
-/// of its own nor of any cloth that links join it with.
+/// Whether each cloth moves freely: no closed pressure, no pin, no link to a fixed place, and no contact in the last frame,
+/// neither of its own nor of any cloth that links join it with.
 pub fn alternating_cloths<R: Real>(
     cloths: &[ClothModel<R>],
     contact: &ContactSystem<R>,

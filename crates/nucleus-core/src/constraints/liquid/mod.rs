@@ -1,9 +1,9 @@
 //! Liquids: particles with constant volume, viscosity and surface tension (position-based fluids: Macklin &
 //! Müller 2013).
 //!
-//! A pass comes first in each time step of the liquid ([`time_step`]), on the predicted positions: neighbours, then viscosity and surface tension, then
-//! density as a constraint. Contact follows, and corrections become velocities as those of all constraints do. Inside,
-//! lengths are in rest distances, from where its first particle begins the frame.
+//! A pass comes first in each time step of the liquid ([`time_step`]), on the predicted positions: neighbours, then
+//! viscosity and surface tension, then density as a constraint. Contact follows, and corrections become velocities as those
+//! of all constraints do. Inside, lengths are in rest distances, from where its first particle begins the frame.
 //!
 //! A liquid is set up again at the start of each frame, so a checkpoint stores nothing of it, and after births and
 //! deaths. Within a frame it keeps the pressure and the excess density of each particle: an excess from before a time
@@ -45,7 +45,7 @@ use crate::state::State;
 
 use density::{Density, Load};
 use neighbours::{CHUNK, Neighbours, chunk_range};
-use time_step::LiquidInterval;
+use time_step::{LiquidInterval, LiquidMotion};
 use viscosity::Viscosity;
 use walls::{Corner, Material, Plane, Walls};
 
@@ -111,11 +111,9 @@ impl LiquidSolver {
         now: &TimeStep<'_, R>,
     ) {
         let TimeStep { frame, schedule, span, .. } = *now;
-        let Some(settings) = frame.cloths[cloth].liquid else { return };
-        let wanted = || match time_step::is_beside_cloth(model, state, frame, cloth, &settings) {
-            true => schedule.h,
-            false => time_step::wanted(model, state, frame, cloth, &settings),
-        };
+        let Some(settings) = &frame.cloths[cloth].liquid else { return };
+        let motion = LiquidMotion { model, state, frame, cloth, settings };
+        let wanted = || motion.wanted_step(schedule.h);
         let interval = self.interval.unwrap_or_default();
         self.interval = Some(interval.next(schedule, frame.duration, span, wanted));
     }

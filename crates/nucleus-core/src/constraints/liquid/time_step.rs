@@ -2,16 +2,18 @@
 //!
 //! Links need many short time steps; a liquid of large particles needs few. Its pressure is solved for to an error of
 //! density. In a time step in which gravity moves a particle by much less than that error, the pressure would follow errors
-//! instead of the weight of the liquid: a pool of 20 m that is at rest gained 35 J/kg in one frame at 48 evaluations.
+//! instead of the weight of the liquid: a pool of 20 m that is at rest gained 35 J/kg in one frame at 96 evaluations.
 //!
 //! External forces act at the start of a liquid's time step, for all of it. The density is that at its end, and the
 //! particles move there at constant velocity, but for contact.
 
+use std::cell::OnceCell;
+
 use nalgebra::Vector3;
 
 use crate::contact::material::ContactMaterial;
-use crate::input::frame::{FrameInput, Liquid};
-use crate::math::Real;
+use crate::input::frame::{ClothFrame, FrameInput, Liquid};
+use crate::math::{Real, Row4};
 use crate::model::Model;
 use crate::schedule::{Schedule, StepInterval};
 use crate::state::State;
@@ -25,8 +27,8 @@ const MAX_ADVANCE: f64 = 0.4;
 const MAX_LONG_ADVANCE: f64 = 0.1;
 /// The same by external forces alone from rest.
 const MAX_FALL: f64 = 0.004;
-/// Longest time step by surface tension, in periods over 2π of capillary waves as short as the rest distance. Surface
-/// tension is explicit: with twelve neighbours about a particle it is unstable from about 0.3 on.
+/// Radians that capillary waves turn in a time step, whose wave number is one per rest distance. Surface tension is
+/// explicit: by an estimate with twelve neighbours about a particle it is unstable from about 0.3 on.
 const MAX_CAPILLARY_PHASE: f64 = 0.2;
 /// Distance to other cloth within which a liquid keeps the time step of the nucleus, beyond the reach of its kernel.
 const CLOTH_MARGIN: f64 = 1.0;
@@ -76,85 +78,82 @@ impl LiquidInterval {
 /// The number of parts that a time step of `h` seconds is split into, so that no particle passes another unseen.
 pub fn splits<R: Real>(model: &Model<R>, state: &State<R>, frame: &FrameInput, h: f64) -> f64 {
     let liquids = frame.cloths.iter().enumerate();
-    let longest =
-        |(cloth, settings): (usize, Liquid)| longest(model, state, frame, (cloth, &settings), MAX_ADVANCE);
-    let parts = liquids.filter_map(|(cloth, settings)| Some((cloth, settings.liquid?))).map(longest);
-    parts.map(|longest| h / longest).fold(1.0, f64::max)
+    let longest = |(cloth, settings): (usize, &ClothFrame)| {
+        let settings = settings.liquid.as_ref()?;
+        Some(LiquidMotion { model, state, frame, cloth, settings }.longest_step(MAX_ADVANCE))
+    };
+    liquids.filter_map(longest).map(|longest| h / longest).fold(1.0, f64::max)
 }
 
-/// The number of time steps of a liquid in a frame, as it is at the start of the frame.
-pub fn steps_in_frame<R: Real>(
-    model: &Model<R>,
-    state: &State<R>,
-    frame: &FrameInput,
-    schedule: &Schedule<R>,
-    cloth: usize,
-    settings: &Liquid,
-) -> f64 {
-    let steps = f64::from(schedule.substeps * schedule.steps);
-    let splits = (schedule.h / longest(model, state, frame, (cloth, settings), MAX_ADVANCE)).ceil();
-    if splits > 1.0 || is_beside_cloth(model, state, frame, cloth, settings) {
-        return steps * splits.max(1.0);
+/// A liquid in motion, which is a cloth by its index.
+#[derive(Clone, Copy)]
+pub struct LiquidMotion<'a, R: Real> {
+    /// The objects.
+    pub model: &'a Model<R>,
+    /// Their positions and velocities.
+    pub state: &'a State<R>,
+    /// The attributes.
+    pub frame: &'a FrameInput,
+    /// The cloth.
+    pub cloth: usize,
+    /// Its attributes as a liquid.
+    pub settings: &'a Liquid,
+}
+
+impl<R: Real> LiquidMotion<'_, R> {
+    /// The number of its time steps in a frame that begins now.
+    pub fn steps_in_frame(&self, schedule: &Schedule<R>) -> f64 {
+        let splits = (schedule.h / self.longest_step(MAX_ADVANCE)).ceil();
+        if splits > 1.0 {
+            return f64::from(schedule.substeps * schedule.steps) * splits;
+        }
+        let wanted = || self.wanted_step(schedule.h);
+        let first = LiquidInterval::default().next(schedule, self.frame.duration, schedule.span(0), wanted);
+        (self.frame.duration / first.starts).round()
     }
-    let wanted = || wanted(model, state, frame, cloth, settings);
-    let first = LiquidInterval::default().next(schedule, frame.duration, schedule.span(0), wanted);
-    (frame.duration / first.starts).round()
-}
 
-/// The length in seconds that a time step of a liquid should have.
-pub fn wanted<R: Real>(
-    model: &Model<R>,
-    state: &State<R>,
-    frame: &FrameInput,
-    cloth: usize,
-    settings: &Liquid,
-) -> f64 {
-    longest(model, state, frame, (cloth, settings), MAX_LONG_ADVANCE)
-}
+    /// The length in seconds that its time step should have, where that of the nucleus is `h`: the same beside other cloth,
+    /// whose links do not wait for a longer one.
+    pub fn wanted_step(&self, h: f64) -> f64 {
+        if self.is_beside_cloth() { h } else { self.longest_step(MAX_LONG_ADVANCE) }
+    }
 
-/// The longest time step of a liquid in seconds, in which its particles move no farther than `advance` rest distances.
-fn longest<R: Real>(
-    model: &Model<R>,
-    state: &State<R>,
-    frame: &FrameInput,
-    (cloth, settings): (usize, &Liquid),
-    advance: f64,
-) -> f64 {
-    let rows = model.cloths[cloth].points();
-    let rows = rows.start as usize..rows.end as usize;
-    let velocities = state.velocity[rows.clone()].iter().map(|row| Vector3::from(row.xyz().map(R::to_f64)));
-    let mean = velocities.clone().sum::<Vector3<f64>>() / rows.len().max(1) as f64;
-    let fastest = velocities.map(|velocity| (velocity - mean).norm_squared()).fold(0.0, f64::max).sqrt();
-    let fields = state.field.get(rows).unwrap_or_default().iter();
-    let field = fields.map(|row| Vector3::from(row.xyz().map(R::to_f64)).norm_squared()).fold(0.0, f64::max);
-    let force = frame.cloths[cloth].local_force.norm() / model.cloths[cloth].point_mass;
-    let at_rest = settings.longest_step_at_rest(frame.gravity.norm() + field.sqrt() + force);
-    at_rest.min(advance * settings.spacing / fastest)
-}
+    /// Its longest time step in seconds, in which its particles move no farther than `advance` rest distances.
+    fn longest_step(&self, advance: f64) -> f64 {
+        let Self { model, state, frame, cloth, settings } = *self;
+        let rows = model.cloths[cloth].points();
+        let rows = rows.start as usize..rows.end as usize;
+        let vector = |row: &Row4<R>| Vector3::from(row.xyz().map(R::to_f64));
+        let velocities = state.velocity[rows.clone()].iter().map(vector);
+        let mean = velocities.clone().sum::<Vector3<f64>>() / rows.len().max(1) as f64;
+        let fastest = velocities.map(|velocity| (velocity - mean).norm_squared()).fold(0.0, f64::max).sqrt();
+        let fields = state.field.get(rows).unwrap_or_default().iter().map(vector);
+        let field = fields.map(|field| field.norm_squared()).fold(0.0, f64::max).sqrt();
+        let force = frame.cloths[cloth].local_force.norm() / model.cloths[cloth].point_mass;
+        let at_rest = settings.longest_step_at_rest(frame.gravity.norm() + field + force);
+        at_rest.min(advance * settings.spacing / fastest)
+    }
 
-/// Whether other cloth is near a liquid that may collide with it. Its links do not wait for the liquid's next time step.
-pub fn is_beside_cloth<R: Real>(
-    model: &Model<R>,
-    state: &State<R>,
-    frame: &FrameInput,
-    cloth: usize,
-    settings: &Liquid,
-) -> bool {
-    let bounds = |cloth: usize| {
-        let places = model.cloths[cloth].points().map(|row| Vector3::from(state.position(row)));
-        places.fold([Vector3::repeat(f64::MAX), Vector3::repeat(f64::MIN)], |[low, high], place| {
-            [low.inf(&place), high.sup(&place)]
-        })
-    };
-    let own = std::cell::OnceCell::new();
-    let is_near = |other: usize| {
-        let pair = [&frame.cloths[cloth], &frame.cloths[other]];
-        let Some(material) = ContactMaterial::<R>::for_cloths(pair, [1.0; 2], frame.layer_range) else {
-            return false;
+    /// Whether other cloth is near that may collide with it.
+    fn is_beside_cloth(&self) -> bool {
+        let Self { model, frame, cloth, settings, .. } = *self;
+        let own = OnceCell::new();
+        let is_near = |other: usize| {
+            let pair = [&frame.cloths[cloth], &frame.cloths[other]];
+            let Some(material) = ContactMaterial::<R>::for_cloths(pair, [1.0; 2], frame.layer_range) else {
+                return false;
+            };
+            let room = material.thickness + (f64::from(REACH) + CLOTH_MARGIN) * settings.spacing;
+            let ([low, high], [from, to]) = (*own.get_or_init(|| self.bounds(cloth)), self.bounds(other));
+            (0..3).all(|axis| low[axis] - room <= to[axis] && from[axis] <= high[axis] + room)
         };
-        let room = material.thickness + (f64::from(REACH) + CLOTH_MARGIN) * settings.spacing;
-        let (own, other): (&[Vector3<f64>; 2], _) = (own.get_or_init(|| bounds(cloth)), bounds(other));
-        (0..3).all(|axis| own[0][axis] - room <= other[1][axis] && other[0][axis] <= own[1][axis] + room)
-    };
-    (0..model.cloths.len()).any(|other| other != cloth && is_near(other))
+        (0..model.cloths.len()).any(|other| other != cloth && is_near(other))
+    }
+
+    /// The bounding box of a cloth, by its index.
+    fn bounds(&self, cloth: usize) -> [Vector3<f64>; 2] {
+        let places = self.model.cloths[cloth].points().map(|row| Vector3::from(self.state.position(row)));
+        let none = [Vector3::repeat(f64::MAX), Vector3::repeat(f64::MIN)];
+        places.fold(none, |[low, high], place| [low.inf(&place), high.sup(&place)])
+    }
 }
