@@ -113,7 +113,7 @@ impl LiquidSolver {
         let TimeStep { frame, schedule, span, .. } = *now;
         let Some(settings) = &frame.cloths[cloth].liquid else { return };
         let motion = LiquidMotion { model, state, frame, cloth, settings };
-        let wanted = || motion.wanted_step(schedule.h);
+        let wanted = || motion.wanted_step();
         let interval = self.interval.unwrap_or_default();
         self.interval = Some(interval.next(schedule, frame.duration, span, wanted));
     }
@@ -276,6 +276,10 @@ impl LiquidSolver {
         if region.is_some() {
             walls.sort_still();
         }
+        let at_end = |row: u32| {
+            let velocity = Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
+            Vector3::from(state.position(row)) + velocity * step.ahead
+        };
         for (other, model) in cloths.iter().enumerate().filter(|(other, _)| *other != step.cloth) {
             let factors = [factors[step.cloth], factors[other]];
             let pair = [own, &frame.cloths[other]];
@@ -292,7 +296,7 @@ impl LiquidSolver {
             }
             for triangle in &model.boundary.triangles {
                 let corners = triangle.map(|row| first + row - model.points().start);
-                let triangle = triangle.map(|row| place(state.position(row).into()));
+                let triangle = triangle.map(|row| place(at_end(row)));
                 walls.cover(triangle, Some(corners), material, bounds);
             }
         }

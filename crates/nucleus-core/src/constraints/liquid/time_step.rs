@@ -25,13 +25,14 @@ use super::kernel::REACH;
 /// liquid turns.
 const MAX_ADVANCE: f64 = 0.4;
 const MAX_LONG_ADVANCE: f64 = 0.1;
+/// The same of cloth relative to the liquid, in a time step that is longer than that of the nucleus: beyond a rest distance it
+/// would be on the far side of the particles that it is to push.
+const MAX_CLOTH_ADVANCE: f64 = 0.4;
 /// The same by external forces alone from rest.
 const MAX_FALL: f64 = 0.004;
 /// Radians that capillary waves turn in a time step, whose wave number is one per rest distance. Surface tension is
 /// explicit: by an estimate with twelve neighbours about a particle it is unstable from about 0.3 on.
 const MAX_CAPILLARY_PHASE: f64 = 0.2;
-/// Distance to other cloth within which a liquid keeps the time step of the nucleus, beyond the reach of its kernel.
-const CLOTH_MARGIN: f64 = 1.0;
 /// Times closer than this, in shares of the frame, are the same.
 const SAME_TIME: f64 = 1e-9;
 
@@ -107,15 +108,15 @@ impl<R: Real> LiquidMotion<'_, R> {
         if splits > 1.0 {
             return f64::from(schedule.substeps * schedule.steps) * splits;
         }
-        let wanted = || self.wanted_step(schedule.h);
+        let wanted = || self.wanted_step();
         let first = LiquidInterval::default().next(schedule, self.frame.duration, schedule.span(0), wanted);
         (self.frame.duration / first.starts).round()
     }
 
-    /// The length in seconds that its time step should have, where that of the nucleus is `h`: the same beside other cloth,
-    /// whose links do not wait for a longer one.
-    pub fn wanted_step(&self, h: f64) -> f64 {
-        if self.is_beside_cloth() { h } else { self.longest_step(MAX_LONG_ADVANCE) }
+    /// The length in seconds that its time step should have.
+    pub fn wanted_step(&self) -> f64 {
+        let longest = self.longest_step(MAX_LONG_ADVANCE).min(self.frame.duration);
+        longest.min(MAX_CLOTH_ADVANCE * self.settings.spacing / self.speed_of_cloth_within(longest))
     }
 
     /// Its longest time step in seconds, in which its particles move no farther than `advance` rest distances.
@@ -123,10 +124,8 @@ impl<R: Real> LiquidMotion<'_, R> {
         let Self { model, state, frame, cloth, settings } = *self;
         let rows = model.cloths[cloth].points();
         let rows = rows.start as usize..rows.end as usize;
+        let fastest = self.largest_speed(cloth, self.mean_velocity());
         let vector = |row: &Row4<R>| Vector3::from(row.xyz().map(R::to_f64));
-        let velocities = state.velocity[rows.clone()].iter().map(vector);
-        let mean = velocities.clone().sum::<Vector3<f64>>() / rows.len().max(1) as f64;
-        let fastest = velocities.map(|velocity| (velocity - mean).norm_squared()).fold(0.0, f64::max).sqrt();
         let fields = state.field.get(rows).unwrap_or_default().iter().map(vector);
         let field = fields.map(|field| field.norm_squared()).fold(0.0, f64::max).sqrt();
         let force = frame.cloths[cloth].local_force.norm() / model.cloths[cloth].point_mass;
@@ -134,20 +133,39 @@ impl<R: Real> LiquidMotion<'_, R> {
         at_rest.min(advance * settings.spacing / fastest)
     }
 
-    /// Whether other cloth is near that may collide with it.
-    fn is_beside_cloth(&self) -> bool {
+    /// Largest speed of other cloth relative to the liquid, of cloth that it may touch within so many seconds.
+    fn speed_of_cloth_within(&self, seconds: f64) -> f64 {
         let Self { model, frame, cloth, settings, .. } = *self;
         let own = OnceCell::new();
-        let is_near = |other: usize| {
+        let speed_if_near = |other: usize| {
             let pair = [&frame.cloths[cloth], &frame.cloths[other]];
-            let Some(material) = ContactMaterial::<R>::for_cloths(pair, [1.0; 2], frame.layer_range) else {
-                return false;
-            };
-            let room = material.thickness + (f64::from(REACH) + CLOTH_MARGIN) * settings.spacing;
-            let ([low, high], [from, to]) = (*own.get_or_init(|| self.bounds(cloth)), self.bounds(other));
-            (0..3).all(|axis| low[axis] - room <= to[axis] && from[axis] <= high[axis] + room)
+            let material = ContactMaterial::<R>::for_cloths(pair, [1.0; 2], frame.layer_range)?;
+            let ([low, high], mean) = *own.get_or_init(|| (self.bounds(cloth), self.mean_velocity()));
+            let speed = self.largest_speed(other, mean);
+            let room = material.thickness + f64::from(REACH) * settings.spacing + speed * seconds;
+            let [from, to] = self.bounds(other);
+            (0..3)
+                .all(|axis| low[axis] - room <= to[axis] && from[axis] <= high[axis] + room)
+                .then_some(speed)
         };
-        (0..model.cloths.len()).any(|other| other != cloth && is_near(other))
+        (0..model.cloths.len()).filter(|other| *other != cloth).filter_map(speed_if_near).fold(0.0, f64::max)
+    }
+
+    /// The mean velocity of the liquid.
+    fn mean_velocity(&self) -> Vector3<f64> {
+        let rows = self.model.cloths[self.cloth].points();
+        let count = rows.len().max(1) as f64;
+        rows.map(|row| self.velocity(row)).sum::<Vector3<f64>>() / count
+    }
+
+    /// The largest speed of a cloth, by its index, relative to a velocity.
+    fn largest_speed(&self, cloth: usize, mean: Vector3<f64>) -> f64 {
+        let squares = self.model.cloths[cloth].points().map(|row| (self.velocity(row) - mean).norm_squared());
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
+    fn velocity(&self, row: u32) -> Vector3<f64> {
+        self.state.velocity[row as usize].xyz().map(R::to_f64).into()
     }
 
     /// The bounding box of a cloth, by its index.
