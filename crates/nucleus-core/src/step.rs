@@ -136,7 +136,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     find_near_colliders(&solver.model, &solver.state, &mut solver.contact, frame);
     let Solver { model, state, contact, links, .. } = solver;
     let links_changed = form_links(links, model, frame);
-    update_pair_filter(contact, model, links, frame, links_changed);
+    update_pair_filter(contact, (model, state), links, frame, links_changed);
     balance_joined_cloths(contact, links);
     begin_links(links, model, state, contact, frame);
     let anchors = if contact.is_free.contains(&false) { &state.anchor[..] } else { &[] };
@@ -231,7 +231,7 @@ fn end_substep<R: CompiledReal>(
     let scene = (&*model, &contact.collider_states[..]);
     let has_broken = break_links(links, scene, state, frame, [end, substep_length]);
     if has_broken || has_lost_links {
-        update_pair_filter(contact, model, links, frame, true);
+        update_pair_filter(contact, (model, state), links, frame, true);
     }
     solver.contact.set_time(f64::from(substep) / f64::from(schedule.substeps));
 }

@@ -1,28 +1,36 @@
 //! Updates of the pair filter: the exclusions of a frame, and the points that are welded.
 
+use nalgebra::Vector3;
+
 use crate::constraints::link::lists::Links;
+use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::FrameInput;
 use crate::math::Real;
 use crate::model::Model;
+use crate::state::State;
 
 /// Takes up the exclusions of a frame and the points that are welded. Candidates of points that this concerns are
 /// searched again.
 pub fn update_pair_filter<R: Real>(
     contact: &mut ContactSystem<R>,
-    model: &Model<R>,
+    (model, state): (&Model<R>, &State<R>),
     links: &Links<R>,
     frame: &FrameInput,
     links_changed: bool,
 ) {
+    let rows = model.cloths.last().map_or(0, |last| last.blocks.end()) as usize;
+    if contact.pair_filter.tears() && !links_changed {
+        keep_released(contact, state, rows);
+    }
     if frame.exclusions.is_empty() && !contact.pair_filter.has_exclusions() && !links_changed {
         return;
     }
     let before = contact.pair_filter.clone();
-    let rows = model.cloths.last().map_or(0, |last| last.blocks.end()) as usize;
     contact.pair_filter.set_exclusions(&frame.exclusions, &model.cloths, &model.colliders, rows);
     if links_changed {
         contact.pair_filter.set_welds(links.clusters(&model.cloths), links.can_tear());
+        keep_released(contact, state, rows);
     }
     let all = contact.pair_filter.differs_in_colliders(&before);
     for row in 0..rows {
@@ -36,4 +44,20 @@ pub fn update_pair_filter<R: Real>(
             *is_due |= model.points().any(|row| contact.pair_filter.differs_at(&before, row as usize));
         }
     }
+}
+
+/// Forgets the pairs that have come apart since their welds were released: they keep their contact thickness from now on.
+fn keep_released<R: Real>(contact: &mut ContactSystem<R>, state: &State<R>, rows: usize) {
+    let ContactSystem { cloth_contacts, pair_filter, .. } = contact;
+    let is_near = |[a, b]: [u32; 2]| {
+        let Some(ClothContacts { elements, materials, .. }) = &*cloth_contacts else { return false };
+        let [ours, theirs] = [a, b].map(|row| elements.cloth[row as usize] as usize);
+        let cloths = materials.len().isqrt();
+        let thickness = materials[ours * cloths + theirs].as_ref().map(|material| material.thickness);
+        let apart = Vector3::from(state.position(a)) - Vector3::from(state.position(b));
+        // Rows of particles have other particles later.
+        ![a, b].iter().any(|row| elements.is_free_point[*row as usize])
+            && thickness.is_none_or(|thickness| apart.norm() < thickness)
+    };
+    pair_filter.keep_released(rows, is_near);
 }

@@ -6,6 +6,7 @@ use crate::bytes::checkpoint_struct;
 use crate::input::links::{ExcludedSide, Exclusion, MAX_EXCLUSIONS};
 use crate::math::Real;
 use crate::model::{ClothModel, ColliderModel};
+use crate::union_find::UnionFind;
 
 /// The exclusions that have a point on their first and on their second side, as bits.
 type Sides = [u64; 2];
@@ -23,10 +24,15 @@ pub struct PairFilter {
     everything: Sides,
     /// Whether welds can break: elements that coincide at rest then part.
     tears: bool,
+    /// Pairs of rows that were welded, and are still nearer to each other than their contact thickness.
+    released: Vec<[u32; 2]>,
+    /// By row: the lowest row that it is welded to or was released from; empty where nothing was released.
+    released_clusters: Vec<u32>,
 }
 
 checkpoint_struct!([] PairFilter {
-    columns: [], values: [clusters, cloths, colliders, everything, tears], parts: [], rebuilt: [],
+    columns: [], values: [clusters, cloths, colliders, everything, tears, released, released_clusters], parts: [],
+    rebuilt: [],
 });
 
 impl PairFilter {
@@ -42,6 +48,8 @@ impl PairFilter {
             || self.colliders.len() == colliders.len()
                 && self.colliders.iter().zip(colliders).all(|(points, count)| points.len() == count);
         of_rows(self.clusters.len())
+            && of_rows(self.released_clusters.len())
+            && self.released.iter().flatten().all(|row| (*row as usize) < rows)
             && of_rows(self.cloths.len())
             && self.colliders.is_empty() == self.cloths.is_empty()
             && of_colliders
@@ -49,7 +57,13 @@ impl PairFilter {
 
     /// Whether elements that coincide at rest may have been torn from each other.
     pub fn tears(&self) -> bool {
-        self.tears
+        self.tears || !self.released.is_empty()
+    }
+
+    /// Whether two elements have points that were welded to each other, and have not been apart since.
+    #[inline]
+    pub fn are_released(&self, ours: &[u32], theirs: &[u32]) -> bool {
+        share_cluster(&self.released_clusters, ours, theirs) && !self.are_joined(ours, theirs)
     }
 
     /// Whether two elements of cloth do not collide.
@@ -79,8 +93,7 @@ impl PairFilter {
     /// Whether two elements have points that are welded to each other.
     #[inline]
     pub fn are_joined(&self, ours: &[u32], theirs: &[u32]) -> bool {
-        let cluster = |point: &u32| self.clusters[*point as usize];
-        !self.clusters.is_empty() && ours.iter().any(|p| theirs.iter().any(|q| cluster(p) == cluster(q)))
+        share_cluster(&self.clusters, ours, theirs)
     }
 
     fn of_cloth(&self, points: &[u32]) -> Sides {
@@ -90,10 +103,27 @@ impl PairFilter {
         points.iter().fold([u64::MAX; 2], |all, &point| both(all, self.cloths[point as usize]))
     }
 
-    /// Takes up the points that are welded to others, and whether welds can break.
+    /// Takes up the points that are welded to others, and whether welds can break. What was welded until now is released.
     pub fn set_welds(&mut self, clusters: Vec<u32>, tears: bool) {
-        self.clusters = clusters;
+        let before = std::mem::replace(&mut self.clusters, clusters);
         self.tears |= tears;
+        let welded = (0..).zip(before).filter(|(row, first)| row != first);
+        let Self { clusters, released, .. } = self;
+        let parted = welded.filter(|(row, first)| !share_cluster(clusters, &[*row], &[*first]));
+        released.extend(parted.map(|(row, first)| [first, row]));
+    }
+
+    /// Keeps the released pairs that are near, of `rows` rows in all.
+    pub fn keep_released(&mut self, rows: usize, is_near: impl Fn([u32; 2]) -> bool) {
+        self.released.retain(|pair| is_near(*pair));
+        self.released_clusters.clear();
+        if self.released.is_empty() {
+            return;
+        }
+        let mut sets = UnionFind::new(rows);
+        let welded = (0..).zip(&self.clusters).map(|(row, first)| [*first, row]);
+        welded.chain(self.released.iter().copied()).for_each(|[a, b]| sets.union(a, b));
+        self.released_clusters.extend((0..rows as u32).map(|row| sets.find(row)));
     }
 
     /// Whether there are exclusions.
@@ -157,6 +187,13 @@ impl PairFilter {
             }
         }
     }
+}
+
+/// Whether one of each is in the same cluster.
+#[inline]
+fn share_cluster(clusters: &[u32], ours: &[u32], theirs: &[u32]) -> bool {
+    let cluster = |point: &u32| clusters[*point as usize];
+    !clusters.is_empty() && ours.iter().any(|p| theirs.iter().any(|q| cluster(p) == cluster(q)))
 }
 
 fn both(a: Sides, b: Sides) -> Sides {

@@ -84,6 +84,26 @@ fn a_weld_drifts_by_less_than_a_ten_thousandth_of_its_size_at_any_resistance() {
     }
 }
 
+#[test]
+fn sheets_at_rest_whose_seam_is_released_stay_where_they_are() {
+    let (_, builder, constraint) = hung_sheets(7, LinkMethod::Weld);
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(2, PHYSICAL, constraint) };
+    input.cloths.fill(ClothFrame { thickness: 0.004, ..still() });
+    run(&mut solver, &mut input, 2);
+    input.constraints[0].formed = Some(Vec::new());
+    for frame in 0..12 {
+        let report = run(&mut solver, &mut input, 1);
+        assert_eq!(report.pairs_unresolved, 0, "frame {frame}");
+        for cloth in [0, 1].map(ClothId) {
+            let mut velocities = Vec::new();
+            solver.velocities(cloth, 1.0, &mut velocities);
+            let fastest = velocities.iter().map(|v| Vec3::from(v.map(f64::from)).norm()).fold(0.0, f64::max);
+            assert!(fastest < 1e-6, "frame {frame}: {fastest} m/s");
+        }
+    }
+}
+
 // EVIDENCE: N2.4-5  glue lets go at a load
 #[test]
 fn glue_breaks_at_the_stated_load_on_any_mesh() {
