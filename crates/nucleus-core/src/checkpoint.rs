@@ -136,6 +136,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         material_maps,
         cloth_contacts,
         pair_filter,
+        bouncing: _,
         touches,
         ground,
     } = contact;

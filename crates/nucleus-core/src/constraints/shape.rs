@@ -41,6 +41,8 @@ pub struct ShapeModel {
     rest: Vec<Vec<Vector3<f64>>>,
     /// Shares of the two strengths that each point of each shell gets; empty where all get all of them.
     share: Vec<Vec<[f64; 2]>>,
+    /// The row of each point, ascending, and its shell.
+    by_row: Vec<(u32, u32)>,
     /// First of the shells in the state.
     pub first: usize,
 }
@@ -78,12 +80,27 @@ impl ShapeModel {
             let is_uniform = maps.iter().all(|map| map.is_empty());
             model.share.push(if is_uniform { Vec::new() } else { shell.iter().map(share).collect() });
         }
+        let rows =
+            (0..).zip(&model.shells).flat_map(|(shell, rows)| rows.iter().map(move |&row| (row, shell)));
+        model.by_row = rows.collect();
+        model.by_row.sort_unstable();
         model
     }
 
     /// How many shells there are.
     pub fn shells(&self) -> usize {
         self.shells.len()
+    }
+
+    /// The shell of a row.
+    pub fn shell_of(&self, row: u32) -> Option<usize> {
+        let at = self.by_row.binary_search_by_key(&row, |&(row, _)| row).ok()?;
+        Some(self.by_row[at].1 as usize)
+    }
+
+    /// The rows of a shell.
+    pub fn rows_of(&self, shell: usize) -> &[u32] {
+        &self.shells[shell]
     }
 
     /// Points that are held.
@@ -94,7 +111,7 @@ impl ShapeModel {
     /// Bytes of its lists.
     pub fn bytes(&self) -> usize {
         let shared: usize = self.share.iter().map(|share| size_of_val(&share[..])).sum();
-        self.rows() * (size_of::<u32>() + size_of::<Vector3<f64>>()) + shared
+        self.rows() * (size_of::<u32>() + size_of::<(u32, u32)>() + size_of::<Vector3<f64>>()) + shared
     }
 
     /// Moves the points of a cloth towards their goals.

@@ -43,7 +43,7 @@
 //! | contacts as tasks that threads share | [`colouring`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`], [`collider_maps`] |
 //! | the split of a push, friction, adhesion, the law of restitution | [`response`] |
-//! | restitution at the end of a step | [`restitution`] |
+//! | restitution at the end of a step; of rigid bodies | [`restitution`], [`rigid_impact`] |
 //! | the positions that contacts read and write; counters | [`time_step`] |
 //! | contact with colliders | [`collider`] |
 //! | contact among cloths, friction anchors, untangling | [`cloth`] |
@@ -117,6 +117,7 @@ pub mod point_field;
 pub mod push_out;
 pub mod response;
 pub mod restitution;
+pub mod rigid_impact;
 pub mod room;
 pub mod safeguard;
 pub mod system;

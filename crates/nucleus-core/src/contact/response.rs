@@ -7,6 +7,7 @@
 
 use crate::input::frame::COUNT_PERIOD;
 use crate::math::{Real, add, dot, max, scale, sub};
+use crate::state::State;
 
 /// Speed in m/s at which contact resolves a depth that existed before the step.
 pub(super) const DEPENETRATION_SPEED: f64 = 1.0;
@@ -178,6 +179,19 @@ pub struct Restitution<R> {
     pub h: R,
 }
 
+/// A point that touches the ground or a collider at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Touch<R> {
+    /// The point.
+    pub row: u32,
+    /// Unit normal of the surface.
+    pub normal: [R; 3],
+    /// Its velocity, in m/s.
+    pub surface: [R; 3],
+    /// Coefficient of restitution, 0 to 1.
+    pub coefficient: R,
+}
+
 /// The state of a point after its contacts.
 #[derive(Debug, Clone, Copy)]
 pub struct Impact<R> {
@@ -187,6 +201,25 @@ pub struct Impact<R> {
     pub displacement: [R; 3],
     /// Velocity now, in m/s.
     pub velocity: [R; 3],
+}
+
+impl<R: Real> Impact<R> {
+    /// That of a point, by its row.
+    pub fn of(state: &State<R>, row: usize) -> Self {
+        Self {
+            predicted: add(
+                state.predicted[row].xyz(),
+                add(state.depenetration_by_collider[row].xyz(), state.depenetration_by_cloth[row].xyz()),
+            ),
+            displacement: state.displacement[row].xyz(),
+            velocity: state.velocity[row].xyz(),
+        }
+    }
+
+    /// The speed along a normal that corrections gave to it, in a step of `h` seconds.
+    pub fn push_speed(&self, normal: [R; 3], h: R) -> R {
+        dot(normal, sub(self.displacement, self.predicted)) / h
+    }
 }
 
 impl<R: Real> Restitution<R> {
@@ -200,10 +233,8 @@ impl<R: Real> Restitution<R> {
 
     /// The velocity after collision with a surface of this normal and velocity.
     pub fn velocity_after(&self, impact: &Impact<R>, normal: [R; 3], surface: [R; 3]) -> [R; 3] {
-        let now = sub(impact.velocity, surface);
-        let pushed = sub(impact.displacement, impact.predicted);
-        let speed = dot(normal, now);
-        let before = speed - dot(normal, pushed) / self.h;
+        let speed = dot(normal, sub(impact.velocity, surface));
+        let before = speed - impact.push_speed(normal, self.h);
         let after = -(self.coefficient * before);
         if -before <= self.min_speed || speed >= after {
             return impact.velocity;

@@ -4,10 +4,11 @@
 //! each touching contact the normal speed becomes the coefficient times that before the collision (Müller et al.
 //! 2020, "Detailed rigid body simulation with extended position based dynamics", §3.6).
 
-use crate::contact::response::{Impact, Restitution};
+use crate::contact::response::{Impact, Restitution, Touch};
+use crate::contact::rigid_impact::{rebound, share_of_impact};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ColliderStepArgs;
-use crate::math::{Real, Row4, add};
+use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::state::State;
 
@@ -17,68 +18,92 @@ pub fn apply_restitution<R: Real>(pass: &mut ContactPass<'_, R>) {
     let h = pass.schedule.h;
     let min_speed = R::from_f64(2.0 * pass.frame.gravity.norm() * h);
     let restitution = Restitution { coefficient: R::ZERO, min_speed, h: R::from_f64(h) };
-    restitution_at_ground(pass, restitution);
+    let mut touches = std::mem::take(&mut pass.contact.bouncing);
     for cloth in 0..pass.model.cloths.len() {
-        restitution_at_colliders(pass, restitution, cloth);
+        // A rigid body that does not bounce stops as a whole too.
+        let share = share_of_impact(pass.schedule, cloth);
+        touches.clear();
+        find_touches_of_ground(pass, cloth, share > 0.0, &mut touches);
+        find_touches_of_colliders(pass, cloth, share > 0.0, &mut touches);
+        if share > 0.0 {
+            let shape = &pass.model.cloths[cloth].shape;
+            touches.sort_by_key(|touch| (shape.shell_of(touch.row), touch.row));
+            for touches in touches.chunk_by(|a, b| shape.shell_of(a.row) == shape.shell_of(b.row)) {
+                let Some(shell) = shape.shell_of(touches[0].row) else { continue };
+                rebound(pass.state, shape.rows_of(shell), touches, restitution, share);
+            }
+        } else {
+            touches.iter().for_each(|touch| bounce(pass.state, touch, restitution));
+        }
     }
+    pass.contact.bouncing = touches;
     restitution_at_cloth(pass, restitution);
 }
 
-fn restitution_at_ground<R: Real>(pass: &mut ContactPass<'_, R>, restitution: Restitution<R>) {
-    for cloth in 0..pass.model.cloths.len() {
-        let Some(material) = pass.contact.ground_materials[cloth]
-            .filter(|material| material.has_restitution() && !pass.contact.is_free[cloth])
-        else {
-            continue;
-        };
-        for row in pass.model.cloths[cloth].points() {
-            let (point, impact) = (([row], [], &([R::ONE], [])), impact(pass.state, row as usize));
-            let thickness =
-                material.thickness_at(&pass.contact.material_maps, point, R::from_f64(material.thickness));
-            let restitution = Restitution {
-                coefficient: material.bounce_at(&pass.contact.material_maps, point),
-                ..restitution
-            };
-            let Some(plane) = pass.contact.ground.in_step(pass.span) else { return };
-            let height = plane.height_now(row, impact.displacement);
-            if restitution.coefficient > R::ZERO && Restitution::touches(height, thickness) {
-                let surface = plane.velocity(row, impact.displacement, restitution.h);
-                let velocity = restitution.velocity_after(&impact, plane.normal(), surface);
-                set_velocity(pass.state, row as usize, velocity);
+/// Finds the points of a cloth that touch the ground where it bounces, or also where it does not.
+fn find_touches_of_ground<R: Real>(
+    pass: &ContactPass<'_, R>,
+    cloth: usize,
+    also_without: bool,
+    touches: &mut Vec<Touch<R>>,
+) {
+    let Some(material) = pass.contact.ground_materials[cloth]
+        .filter(|material| (also_without || material.has_restitution()) && !pass.contact.is_free[cloth])
+    else {
+        return;
+    };
+    let Some(plane) = pass.contact.ground.in_step(pass.span) else { return };
+    let h = R::from_f64(pass.schedule.h);
+    for row in pass.model.cloths[cloth].points() {
+        let (point, displacement) =
+            (([row], [], &([R::ONE], [])), pass.state.displacement[row as usize].xyz());
+        let thickness =
+            material.thickness_at(&pass.contact.material_maps, point, R::from_f64(material.thickness));
+        if Restitution::touches(plane.height_now(row, displacement), thickness) {
+            let coefficient = material.bounce_at(&pass.contact.material_maps, point);
+            let surface = plane.velocity(row, displacement, h);
+            touches.push(Touch { row, normal: plane.normal(), surface, coefficient });
+        }
+    }
+}
+
+/// Finds the points of a cloth that touch colliders where they bounce, or also where they do not.
+fn find_touches_of_colliders<R: Real>(
+    pass: &mut ContactPass<'_, R>,
+    cloth: usize,
+    also_without: bool,
+    touches: &mut Vec<Touch<R>>,
+) {
+    let ContactPass { state, frame, span, contact, .. } = pass;
+    let ContactSystem { collider_states, collider_contacts, material_maps, .. } = &**contact;
+    let h = pass.schedule.h;
+    for index in contact.lists_of(cloth) {
+        let list = &collider_contacts[index];
+        let (at, interval) = (list.collider, list.interval);
+        let material = contact.collider_materials_of(cloth)[at]
+            .filter(|material| also_without || material.has_restitution());
+        let Some(material) = material else { continue };
+        let view = ColliderStepArgs { material, material_maps, at, h, time: [span.to; 2], interval };
+        let step = view.of(state, &collider_states[at]);
+        for &active in &list.active.points.indices {
+            let contact = list.point_face[active as usize];
+            if let Some((normal, surface)) = contact.touching_surface(&step, frame.duration) {
+                let coefficient = contact.bounce(&step);
+                touches.push(Touch { row: contact.points[0], normal, surface, coefficient });
             }
         }
     }
 }
 
-fn restitution_at_colliders<R: Real>(
-    pass: &mut ContactPass<'_, R>,
-    restitution: Restitution<R>,
-    cloth: usize,
-) {
-    for index in pass.contact.lists_of(cloth) {
-        let collider = pass.contact.collider_contacts[index].collider;
-        let material =
-            pass.contact.collider_materials_of(cloth)[collider].filter(|material| material.has_restitution());
-        let Some(material) = material else { continue };
-        for active in 0..pass.contact.collider_contacts[index].active.points.indices.len() {
-            let ContactPass { state, frame, span, contact, .. } = pass;
-            let ContactSystem { collider_states, collider_contacts, material_maps, .. } = &**contact;
-            let contact = collider_contacts[index].point_face
-                [collider_contacts[index].active.points.indices[active] as usize];
-            let (h, interval) = (restitution.h.to_f64(), collider_contacts[index].interval);
-            let view =
-                ColliderStepArgs { material, material_maps, at: collider, h, time: [span.to; 2], interval };
-            let step = view.of(state, &collider_states[collider]);
-            let touch = contact.touching_surface(&step, frame.duration);
-            let bounce = contact.bounce(&step);
-            if let Some((normal, surface)) = touch.filter(|_| bounce > R::ZERO) {
-                let row = contact.points[0] as usize;
-                let restitution = Restitution { coefficient: bounce, ..restitution };
-                let velocity = restitution.velocity_after(&impact(state, row), normal, surface);
-                set_velocity(state, row, velocity);
-            }
-        }
+/// Sets the velocity of a point after its collision, unless it is pinned.
+fn bounce<R: Real>(state: &mut State<R>, touch: &Touch<R>, restitution: Restitution<R>) {
+    let row = touch.row as usize;
+    if touch.coefficient <= R::ZERO || state.displacement[row].0[3] <= R::ZERO {
+        return;
     }
+    let restitution = Restitution { coefficient: touch.coefficient, ..restitution };
+    let [x, y, z] = restitution.velocity_after(&Impact::of(state, row), touch.normal, touch.surface);
+    state.velocity[row] = Row4([x, y, z, R::ZERO]);
 }
 
 fn restitution_at_cloth<R: Real>(pass: &mut ContactPass<'_, R>, restitution: Restitution<R>) {
@@ -91,22 +116,4 @@ fn restitution_at_cloth<R: Real>(pass: &mut ContactPass<'_, R>, restitution: Res
     let columns = DisjointSlice::new(&mut velocities);
     pass.with_cloth_contacts(|cache, step, pool| cache.apply_restitution(step, columns, restitution, pool));
     pass.state.velocity = velocities;
-}
-
-fn impact<R: Real>(state: &State<R>, row: usize) -> Impact<R> {
-    Impact {
-        predicted: add(
-            state.predicted[row].xyz(),
-            add(state.depenetration_by_collider[row].xyz(), state.depenetration_by_cloth[row].xyz()),
-        ),
-        displacement: state.displacement[row].xyz(),
-        velocity: state.velocity[row].xyz(),
-    }
-}
-
-/// Sets the velocity of a point that is not pinned.
-fn set_velocity<R: Real>(state: &mut State<R>, row: usize, [x, y, z]: [R; 3]) {
-    if state.displacement[row].0[3] > R::ZERO {
-        state.velocity[row] = Row4([x, y, z, R::ZERO]);
-    }
 }

@@ -16,6 +16,7 @@ use crate::contact::depenetration::Obstacle;
 use crate::contact::ground::Ground;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
+use crate::contact::response::Touch;
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4};
@@ -60,6 +61,8 @@ pub struct ContactSystem<R: Real> {
     pub has_unproven: [Vec<AtomicBool>; 2],
     /// Elements that do not collide with each other.
     pub pair_filter: PairFilter,
+    /// What touches at the end of a time step where it bounces: a buffer.
+    pub bouncing: Vec<Touch<R>>,
     /// Whether each cloth had a contact in the last frame.
     pub touches: Vec<bool>,
     /// Whether each cloth has had a contact in this frame.
@@ -109,6 +112,7 @@ impl<R: Real> ContactSystem<R> {
             contact_mask: Vec::with_capacity(models.len()),
             has_unproven: [(); 2].map(|()| models.iter().map(|_| AtomicBool::new(false)).collect()),
             pair_filter: PairFilter::default(),
+            bouncing: Vec::new(),
             // Cloth that starts from a saved state may be in contact; the first frame finds out.
             touches: cloths.iter().map(|cloth| !cloth.start.positions.is_empty()).collect(),
             has_touched: models.iter().map(|_| AtomicBool::new(false)).collect(),

@@ -1,0 +1,165 @@
+//! Impacts of bodies that keep their shape (`rigidity`): the whole body rebounds, not the points that touch.
+//!
+//! A rigid body that lands on one point rebounds by an impulse on all of it. If the velocity of that point alone were
+//! reversed, its shape would undo it in the next step; and what the contact has pressed into the shape would throw the body
+//! back whatever its `bounce`. The velocities of the body's best rigid motion therefore get the impulses of its contacts, by
+//! sequential impulses on mass and moment of inertia (Guendelman, Bridson and Fedkiw 2003, *Nonconvex rigid bodies with
+//! stacking*, §5).
+//!
+//! How much of an impulse the whole takes follows from its shape's period: a body that would spring back within a film
+//! frame takes all of it.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::contact::response::{Impact, Restitution, Touch};
+use crate::math::{Real, Row4};
+use crate::schedule::{Schedule, WholeEffect, WholeSweep};
+use crate::state::State;
+
+/// Rounds of sequential impulses over the contacts of a body.
+const ROUNDS: usize = 20;
+/// Seconds within which an impact is that of a rigid body: a frame of film.
+const SUDDEN: f64 = 1.0 / 24.0;
+/// Share of a body's largest moment of inertia that each axis has at least: a straight line has none about itself.
+const LEAST_INERTIA: f64 = 1e-6;
+
+/// The share of an impulse that the whole of a cloth takes, by its index; 0 without `rigidity`.
+pub fn share_of_impact<R: Real>(schedule: &Schedule<R>, cloth: usize) -> f64 {
+    let rigid = |whole: &WholeSweep| match whole.effect {
+        WholeEffect::Shape(strength) if whole.cloth == cloth => Some(strength.rigid),
+        _ => None,
+    };
+    let rigid = schedule.wholes.iter().find_map(rigid).unwrap_or(0.0);
+    // The spring that moves a point by this share of its way in a step; an impact lasts for half of its period.
+    let frequency = (rigid / (1.0 - rigid).max(f64::MIN_POSITIVE)).sqrt() / schedule.h;
+    (frequency * SUDDEN / PI).min(1.0)
+}
+
+/// The best rigid motion of a body.
+struct RigidMotion {
+    centre: Vector3<f64>,
+    velocity: Vector3<f64>,
+    spin: Vector3<f64>,
+    inverse_mass: f64,
+    inverse_inertia: Matrix3<f64>,
+}
+
+/// A contact of a body.
+struct RigidContact {
+    normal: Vector3<f64>,
+    /// From the centre of mass, in metres.
+    arm: Vector3<f64>,
+    /// The normal speed that the body shall have here at least, in m/s.
+    least: f64,
+    /// Sum of its impulses in N·s; contacts do not pull.
+    impulse: f64,
+}
+
+/// Applies the impulses of what a body of these rows touches. Nothing changes where it touches nothing fast enough, or where
+/// one of its points is pinned. `touches` are sorted by row.
+pub fn rebound<R: Real>(
+    state: &mut State<R>,
+    rows: &[u32],
+    touches: &[Touch<R>],
+    restitution: Restitution<R>,
+    share: f64,
+) {
+    let is_pinned = |row: &u32| state.displacement[*row as usize].0[3] <= R::ZERO;
+    if rows.iter().any(is_pinned) {
+        return;
+    }
+    let pushes = push_velocities(state, touches, restitution.h);
+    let mut motion = RigidMotion::new(state, rows, &pushes);
+    let before = [motion.velocity, motion.spin];
+    let min_speed = restitution.min_speed.to_f64();
+    let mut is_impact = false;
+    let mut contacts = Vec::with_capacity(touches.len());
+    for touch in touches {
+        let [normal, surface] = [touch.normal, touch.surface].map(|row| Vector3::from(row.map(R::to_f64)));
+        let arm = Vector3::from(state.position(touch.row)) - motion.centre;
+        let approach = normal.dot(&(surface - motion.velocity_at(&arm)));
+        is_impact |= approach > min_speed;
+        let rebound =
+            if approach > min_speed { touch.coefficient.to_f64() * approach } else { -approach.max(0.0) };
+        contacts.push(RigidContact { normal, arm, least: normal.dot(&surface) + rebound, impulse: 0.0 });
+    }
+    if !is_impact {
+        return;
+    }
+    for _ in 0..ROUNDS {
+        contacts.iter_mut().for_each(|contact| motion.push(contact));
+    }
+    for (row, push) in pushes {
+        add_velocity(state, row, -push * share);
+    }
+    let [velocity, spin] = [motion.velocity - before[0], motion.spin - before[1]];
+    for &row in rows {
+        let arm = Vector3::from(state.position(row)) - motion.centre;
+        add_velocity(state, row, (velocity + spin.cross(&arm)) * share);
+    }
+}
+
+impl RigidMotion {
+    /// That of these rows, without the velocities that contacts gave to some of them.
+    fn new<R: Real>(state: &State<R>, rows: &[u32], pushes: &[(u32, Vector3<f64>)]) -> Self {
+        let mass = |row: u32| 1.0 / state.inverse_mass[row as usize].to_f64();
+        let place = |row: u32| Vector3::from(state.position(row));
+        let total: f64 = rows.iter().map(|&row| mass(row)).sum();
+        let origin = place(rows[0]);
+        let centre =
+            rows.iter().map(|&row| (place(row) - origin) * mass(row)).sum::<Vector3<f64>>() / total + origin;
+        let (mut momentum, mut turning, mut inertia) = (Vector3::zeros(), Vector3::zeros(), Matrix3::zeros());
+        for &row in rows {
+            let (arm, velocity) = (place(row) - centre, velocity_of(state, row));
+            momentum += velocity * mass(row);
+            turning += arm.cross(&velocity) * mass(row);
+            inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * mass(row);
+        }
+        for &(row, push) in pushes {
+            momentum -= push * mass(row);
+            turning -= (place(row) - centre).cross(&push) * mass(row);
+        }
+        inertia += Matrix3::identity() * (inertia.trace() * LEAST_INERTIA + f64::MIN_POSITIVE);
+        let inverse_inertia = inertia.try_inverse().unwrap_or_default();
+        let (velocity, spin) = (momentum / total, inverse_inertia * turning);
+        Self { centre, velocity, spin, inverse_mass: 1.0 / total, inverse_inertia }
+    }
+
+    fn velocity_at(&self, arm: &Vector3<f64>) -> Vector3<f64> {
+        self.velocity + self.spin.cross(arm)
+    }
+
+    /// One impulse of a contact.
+    fn push(&mut self, contact: &mut RigidContact) {
+        let RigidContact { normal, arm, least, impulse } = contact;
+        let lever = arm.cross(normal);
+        let turn = self.inverse_inertia * lever;
+        let mobility = self.inverse_mass + lever.dot(&turn);
+        let wanted = (*least - normal.dot(&self.velocity_at(arm))) / mobility;
+        let change = wanted.max(-*impulse);
+        *impulse += change;
+        self.velocity += *normal * (change * self.inverse_mass);
+        self.spin += turn * change;
+    }
+}
+
+/// The velocity in m/s that contact gave to each point that touches, along the normal of its first touch.
+fn push_velocities<R: Real>(state: &State<R>, touches: &[Touch<R>], h: R) -> Vec<(u32, Vector3<f64>)> {
+    let first_touches = touches.chunk_by(|a, b| a.row == b.row).map(|touches| touches[0]);
+    let push = |touch: Touch<R>| {
+        let speed = Impact::of(state, touch.row as usize).push_speed(touch.normal, h).to_f64();
+        (touch.row, Vector3::from(touch.normal.map(R::to_f64)) * speed)
+    };
+    first_touches.map(push).collect()
+}
+
+fn velocity_of<R: Real>(state: &State<R>, row: u32) -> Vector3<f64> {
+    state.velocity[row as usize].xyz().map(R::to_f64).into()
+}
+
+fn add_velocity<R: Real>(state: &mut State<R>, row: u32, change: Vector3<f64>) {
+    let [x, y, z] = (velocity_of(state, row) + change).into();
+    state.velocity[row as usize] = Row4([x, y, z, 0.0].map(R::from_f64));
+}
