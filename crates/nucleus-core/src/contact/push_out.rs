@@ -23,6 +23,8 @@ struct PushOutSurface {
     /// Share of the correction in each substep.
     share: f64,
     radius: f64,
+    /// Whether each cloth collides with it.
+    collides: Vec<bool>,
 }
 
 /// Pushes points out of all surfaces that do so, at the start of a substep, at time `time` as a share of the
@@ -39,15 +41,22 @@ pub fn push_out<R: Real>(
         let collider = &contact.collider_states[at];
         let faces = model.colliders[at].boundary.triangles.iter();
         let triangles = faces.map(|face| face.map(|point| collider.point(point, time))).collect();
-        let surface =
-            PushOutSurface::new(triangles, frame.colliders[at].push_out, frame.colliders[at].thickness);
+        let theirs = &frame.colliders[at];
+        let collides = (0..model.cloths.len())
+            .map(|cloth| contact.collider_materials_of(cloth).get(at).is_some_and(Option::is_some));
+        let collides = collides.collect();
+        let surface = PushOutSurface::new(triangles, theirs.push_out, theirs.thickness, collides);
         (0..model.cloths.len())
             .for_each(|cloth| push_out_of(&model.cloths[cloth], state, contact, &surface, frame, cloth));
     }
     for at in (0..model.cloths.len()).filter(|&at| pushes(&frame.cloths[at].push_out)) {
         let place = |row: u32| Point::from(state.position(row));
         let triangles = model.cloths[at].boundary.triangles.iter().map(|face| face.map(place)).collect();
-        let surface = PushOutSurface::new(triangles, frame.cloths[at].push_out, frame.cloths[at].thickness);
+        let own = &frame.cloths[at];
+        let materials = contact.cloth_contacts.as_ref().map_or(&[][..], |contacts| &contacts.materials);
+        let with = |cloth: usize| materials.get(at * model.cloths.len() + cloth).is_some_and(Option::is_some);
+        let collides = (0..model.cloths.len()).map(with).collect();
+        let surface = PushOutSurface::new(triangles, own.push_out, own.thickness, collides);
         let others = (0..model.cloths.len()).filter(|&cloth| cloth != at);
         others.for_each(|cloth| push_out_of(&model.cloths[cloth], state, contact, &surface, frame, cloth));
     }
@@ -66,7 +75,8 @@ fn push_out_of<R: Real>(
     let mut is_moved = false;
     for row in model.points() {
         let mut moved = state.displacement[row as usize];
-        let correction = surface.correction(Point::from(state.position(row)), thickness);
+        let correction =
+            surface.correction(Point::from(state.position(row)), thickness, surface.collides[cloth]);
         let Some(correction) = correction.filter(|_| moved.0[3] > R::ZERO) else { continue };
         (0..3).for_each(|axis| moved.0[axis] += R::from_f64(correction[axis]));
         state.displacement[row as usize] = moved;
@@ -82,7 +92,7 @@ fn push_out_of<R: Real>(
 }
 
 impl PushOutSurface {
-    fn new(mut triangles: Vec<[Point; 3]>, push_out: PushOut, thickness: f64) -> Self {
+    fn new(mut triangles: Vec<[Point; 3]>, push_out: PushOut, thickness: f64, collides: Vec<bool>) -> Self {
         if push_out.share < 0.0 {
             triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
         }
@@ -90,14 +100,18 @@ impl PushOutSurface {
         let corners: Vec<Point> = triangles.iter().flatten().copied().collect();
         let faces = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
         let surface = PlacedSurface::new(faces, |corner| corners[corner as usize]);
-        Self { surface, thickness, share, radius: push_out.radius }
+        Self { surface, thickness, share, radius: push_out.radius, collides }
     }
 
     /// The correction of a point in this substep, if it is within the radius and closer to the surface than
-    /// `thickness`, or behind it.
-    fn correction(&self, place: Point, thickness: f64) -> Option<Point> {
+    /// `thickness`, or behind it. `collides` says whether contact keeps points at that distance too.
+    fn correction(&self, place: Point, thickness: f64, collides: bool) -> Option<Point> {
         let Nearest { distance, point, normal, .. } = self.surface.nearest(place, self.radius)?;
-        let is_clear = normal.dot(&(place - point)) >= 0.0 && distance >= thickness;
-        (!is_clear).then(|| (point + normal * thickness - place) * self.share)
+        let height = normal.dot(&(place - point));
+        let is_clear = height >= 0.0 && distance >= thickness;
+        let reached = height + (thickness - height) * self.share;
+        // Within the thickness contact would hold it on the far side.
+        let share = if collides && reached > -thickness { 1.0 } else { self.share };
+        (!is_clear).then(|| (point + normal * thickness - place) * share)
     }
 }

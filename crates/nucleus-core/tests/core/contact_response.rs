@@ -256,6 +256,23 @@ fn push_out_brings_points_within_its_radius_to_the_side_that_its_sign_says() {
 }
 
 #[test]
+fn push_out_by_a_small_share_passes_a_surface_that_holds_points_on_its_far_side() {
+    let mut floor = grid(3, 3, Vec3::x() * 2.0, Vec3::z() * 2.0);
+    floor.positions.iter_mut().for_each(|place| *place -= Vec3::new(1.0, 0.0, 1.0));
+    let bead = moving(beads(vec![Vec3::new(0.11, -0.05, 0.07)]), 0.1, Vec3::zeros());
+    let mut solver = solver(vec![bead], vec![floor]);
+    let push_out = PushOut { share: 0.1, radius: 0.1 };
+    let floor = ColliderFrame { push_out, thickness: 0.004, ..ColliderFrame::default() };
+    let thickness = floor.thickness + bead_settings().thickness;
+    let input = FrameInput { substeps: 3, colliders: vec![floor], ..weightless(vec![bead_settings()]) };
+    for _ in 0..48 {
+        solver.step(&input, &mut ());
+    }
+    let height = solver.point(FIRST, 0).y;
+    assert!((height - thickness).abs() < 0.1 * thickness, "{height}, not {thickness}");
+}
+
+#[test]
 fn cloth_pushes_points_of_other_cloth_out_and_none_of_its_own() {
     let sheet = grid(9, 9, Vec3::x(), Vec3::z());
     let bead = moving(beads(vec![Vec3::new(0.51, -0.03, 0.52)]), 0.1, Vec3::zeros());
