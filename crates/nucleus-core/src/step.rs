@@ -20,7 +20,7 @@ use crate::constraints::damp::damp;
 use crate::constraints::link::glue::break_links;
 use crate::constraints::link::pass::{begin_links, form_links, relax_links};
 use crate::constraints::link::surface::slide_links;
-use crate::constraints::link::velocity::{apply_link_forces, damp_links};
+use crate::constraints::link::velocity::{apply_link_forces, damp_links, drag_links};
 use crate::constraints::liquid::{LiquidScene, LiquidSolver};
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
@@ -257,6 +257,7 @@ fn solve_time_step<R: CompiledReal>(
     }
     let seconds_of_forces = |cloth: usize| liquids[cloth].seconds_of_forces(schedule.h);
     predict(&model.cloths, state, now, &contact.is_free, seconds_of_forces, pool);
+    drag_links(links, (model, &contact.collider_states), state, frame, schedule.h);
     let models = (&model.cloths[..], &model.colliders[..]);
     slide_links(links, models, state, &contact.collider_states, frame, span.to);
     for pass in &schedule.passes {

@@ -28,7 +28,8 @@ pub fn link_sweep<R: Real>(frame: &FrameInput, at: usize, h: f64) -> (LinkSweep<
     let soft = |strength: f64, unit: f64| match is_classic {
         // Fewer evaluations than passes are weaker ones.
         true => ((strength * h / COUNT_PERIOD / f64::from(sweeps)).min(1.0), 0.0),
-        false if strength > 0.0 => (1.0, 1.0 / (strength * unit * h * h)),
+        // Several passes are as many springs, each of which has its part of the stiffness.
+        false if strength > 0.0 => (1.0, f64::from(sweeps) / (strength * unit * h * h)),
         false => (0.0, 0.0),
     };
     let side = |strength: f64| if is_weld { (1.0, 0.0) } else { soft(strength, STIFFNESS_PER_RESISTANCE) };

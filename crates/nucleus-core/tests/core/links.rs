@@ -49,6 +49,41 @@ fn a_rubber_band_pulls_and_does_not_push() {
     }
 }
 
+/// How far a point of a kilogram falls in a second that hangs by a link to a place.
+fn fall(substeps: u32, constraint: ConstraintFrame) -> f64 {
+    let hook = LinkSide::Space(Vec3::zeros());
+    let formed = Some(vec![Link::new([point(0, 0), hook], 0.0)]);
+    let mut solver: Solver<f64> = Solver::new(model([points(&[Vec3::zeros()])]), 1);
+    let constraint = ConstraintFrame { formed, ..constraint };
+    let mut input = FrameInput { substeps, ..tied(1, PHYSICAL, constraint) };
+    run(&mut solver, &mut input, 24);
+    -solver.point(ClothId(0), 0).y
+}
+
+#[test]
+fn full_motion_drag_locks_whatever_the_substeps() {
+    for substeps in [1, 3, 12] {
+        let drag = |motion_drag| ConstraintFrame { strength: 0.0, motion_drag, ..ConstraintFrame::default() };
+        let locked = fall(substeps, drag(1.0));
+        assert!(locked.abs() < 1e-9, "{substeps}: {locked} m");
+        let free = fall(substeps, drag(0.0));
+        assert!((free - 4.9).abs() < 0.1, "{substeps}: {free} m");
+    }
+}
+
+#[test]
+fn a_spring_is_as_stiff_with_more_iterations() {
+    let sag = |least: f64| {
+        let iterations = [least, 5000.0];
+        fall(3, ConstraintFrame { strength: 0.2, damp: 1.0, iterations, ..ConstraintFrame::default() })
+    };
+    let theory = 9.81 / (0.2 * STIFFNESS_PER_RESISTANCE);
+    for least in [0.0, 100.0, 400.0] {
+        let sag = sag(least);
+        assert!((sag / theory - 1.0).abs() < 0.02, "{least}: {sag} m, not {theory}");
+    }
+}
+
 /// Two sheets of one square metre, one below the other, welded along the seam; the upper is pinned at its top.
 fn hung_sheets(side: u32, method: LinkMethod) -> (Surface, ModelBuilder, ConstraintFrame) {
     let upper = grid(side, side, Vec3::x(), -Vec3::y());
