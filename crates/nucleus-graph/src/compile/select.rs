@@ -71,7 +71,7 @@ impl<'a> Elements<'a> {
         (0..self.count(kind) as u32).filter(is_in).collect()
     }
 
-    fn border(&self, kind: ElementKind) -> Vec<u32> {
+    pub(super) fn border(&self, kind: ElementKind) -> Vec<u32> {
         let is_border = |edge: &&([u32; 2], u32)| edge.1 == 1;
         if kind == ElementKind::Edge {
             let edges = (0..).zip(&self.edges).filter(|(_, edge)| is_border(edge));
@@ -84,6 +84,19 @@ impl<'a> Elements<'a> {
             ElementKind::Face => self.any_of(kind, &points),
             _ => self.all_of(kind, &points),
         }
+    }
+
+    /// Each point with the other ends of the border edges at it, or of all edges where it is on no border; sorted.
+    pub(super) fn spans(&self) -> Vec<[u32; 2]> {
+        let mut is_on_border = vec![false; self.points];
+        let border = self.edges.iter().filter(|edge| edge.1 == 1);
+        border.for_each(|(ends, _)| ends.iter().for_each(|&end| is_on_border[end as usize] = true));
+        let both = |&([a, b], faces): &([u32; 2], u32)| [([a, b], faces), ([b, a], faces)];
+        let counts = |&([point, _], faces): &([u32; 2], u32)| faces == 1 || !is_on_border[point as usize];
+        let mut spans: Vec<[u32; 2]> =
+            self.edges.iter().flat_map(both).filter(counts).map(|(span, _)| span).collect();
+        spans.sort_unstable();
+        spans
     }
 
     fn any_of(&self, kind: ElementKind, points: &[bool]) -> Vec<u32> {

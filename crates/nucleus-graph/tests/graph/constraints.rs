@@ -418,7 +418,7 @@ fn joined_edges_resist_folding_only_with_bend() {
         connectionMethod: withinMaxDistance, maxDistance: 0.2, bend: true)"#;
     assert!(folds(&format!("{PAIR}{edges}")) >= 4);
     let points = format!(
-        r#"{PAIR}"s": dynamicConstraint(components: ["a.border", "b.border"], type: weldBorders, bend: true)"#
+        r#"{PAIR}"s": dynamicConstraint(components: ["a.vtx[2]", "b.vtx[0]"], type: weldBorders, bend: true)"#
     );
     let warnings = |nodes: &str| {
         let compiled = program(&of_nodes(nodes, ""));

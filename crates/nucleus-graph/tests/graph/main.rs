@@ -14,4 +14,5 @@ mod particles;
 mod pulling;
 mod scenes;
 mod soft_bodies;
+mod welds;
 mod wiring;

@@ -27,15 +27,17 @@ impl Forming<'_> {
         links
     }
 
-    /// Links from the points of borders to the closest places of other borders, within `maxDistance`.
+    /// Links from the points of borders to the closest places of other borders, within `maxDistance`, thinned out by
+    /// `connectionDensity`.
     pub(super) fn borders(&self) -> Vec<Link> {
         let reach = self.values.number(&con::MAX_DISTANCE) * self.metres;
         let within = self.values.toggle(&con::CONNECT_WITHIN_COMPONENT) || self.source.members.len() == 1;
         let mut links = Vec::new();
         let mut joined = BTreeSet::new();
         let mut welds = BTreeMap::new();
+        let density = self.density();
         for (a, from) in self.source.members.iter().enumerate() {
-            let lengths = from.border_lengths(self.places);
+            let lengths = from.lengths(self.places);
             for (b, to) in self.source.members.iter().enumerate().filter(|(b, _)| within || a != *b) {
                 let edges = self.all_corners(to);
                 let tree = Bvh::new(edges.iter().map(Vec::as_slice));
@@ -48,7 +50,9 @@ impl Forming<'_> {
                         true => f64::INFINITY,
                         false => (foot(&edges[edge as usize], at).place - at).norm(),
                     };
-                    let Some((_, edge)) = tree.nearest(&Bounds::of(&[at]), reach, of) else { continue };
+                    let Some((distance, edge)) = tree.nearest(&Bounds::of(&[at]), reach, of) else {
+                        continue;
+                    };
                     let on = snapped(foot(&edges[edge as usize], at), &edges[edge as usize]);
                     let to_point = to.elements.face(edge as usize)[on.corners[0]];
                     if on.weights[0] == 1.0 {
@@ -58,11 +62,14 @@ impl Forming<'_> {
                             continue;
                         }
                     }
+                    if !density.keeps([point, edge], distance) {
+                        continue;
+                    }
                     let from_place = Place { side: from.side([point; 3], [1.0, 0.0, 0.0]), at, element };
                     let to_place = self.place(to, edge, &on);
                     let link = self.link([(from, from_place), (to, to_place)], None);
                     welds.insert((a, point), links.len() as u32);
-                    links.push(Link { length: lengths.get(&point).copied().unwrap_or_default(), ..link });
+                    links.push(Link { length: lengths.get(&point).copied().unwrap_or(link.length), ..link });
                 }
             }
         }
@@ -70,6 +77,7 @@ impl Forming<'_> {
             let folds: Vec<Link> = self
                 .border_pairs(within, reach)
                 .into_iter()
+                .filter(|&[a, b]| density.keeps([a.1, b.1], self.gap([a, b])))
                 .flat_map(|[a, b]| {
                     let members = [a, b].map(|(member, edge)| (&self.source.members[member], edge));
                     let ends = members[0].0.elements.face(a.1 as usize);

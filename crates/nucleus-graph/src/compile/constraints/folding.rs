@@ -75,6 +75,12 @@ impl Forming<'_> {
         folds
     }
 
+    /// The distance of two edges in metres.
+    pub(super) fn gap(&self, edges: [MemberEdge; 2]) -> f64 {
+        let [a, b] = edges.map(|(member, edge)| self.corners(&self.source.members[member], edge));
+        distance(&a, &b)
+    }
+
     /// The edges of borders that face each other within a distance: the nearest of another border to each, by their middles.
     pub(super) fn border_pairs(&self, within: bool, reach: f64) -> Vec<[MemberEdge; 2]> {
         let members = &self.source.members;

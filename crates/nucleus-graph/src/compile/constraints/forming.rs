@@ -136,7 +136,7 @@ impl Forming<'_> {
         (1..member.elements.len() as u32).map(|k| [k - 1, k]).collect()
     }
 
-    fn corners(&self, member: &Member, element: u32) -> Vec<Point> {
+    pub(super) fn corners(&self, member: &Member, element: u32) -> Vec<Point> {
         let points = member.elements.face(element as usize).iter();
         points.map(|&point| self.places.point(member.object, point)).collect()
     }
@@ -222,7 +222,7 @@ impl Forming<'_> {
         pairs
     }
 
-    fn density(&self) -> Density {
+    pub(super) fn density(&self) -> Density {
         Density {
             share: self.values.number(&con::CONNECTION_DENSITY),
             ramp: Ramp::new(&self.values.at.get(self.values.node, &con::CONNECTION_DENSITY_RANGE)),
@@ -327,7 +327,7 @@ impl Forming<'_> {
 }
 
 /// The share of pairs that are kept: `connectionDensity`, over their distance by `connectionDensityRange`.
-struct Density {
+pub(super) struct Density {
     share: f64,
     ramp: Ramp,
     /// The distance at the end of the ramp, in metres.
@@ -340,7 +340,7 @@ impl Density {
     }
 
     /// Whether a pair of elements at a distance in metres is kept.
-    fn keeps(&self, [x, y]: [u32; 2], distance: f64) -> bool {
+    pub(super) fn keeps(&self, [x, y]: [u32; 2], distance: f64) -> bool {
         chance(x, y) < self.share * self.ramp.value_at((distance / self.reach).min(1.0))
     }
 }

@@ -66,6 +66,8 @@ pub(crate) struct Member {
     pub(crate) elements: Faces,
     /// The next corners of a face behind the ends of each edge; none for an edge without a face. Empty for other elements.
     pub(super) behind: Vec<Option<[u32; 2]>>,
+    /// Points with the other end of an edge of the object that they stand for. Empty for edges, whose points stand for them.
+    pub(super) spans: Vec<[u32; 2]>,
     /// All faces of the object, where links slide on more than the elements.
     pub(super) sheet: Faces,
     /// Factors of the component on strength, tangent strength, glue and weight.
@@ -99,16 +101,25 @@ impl Member {
         std::array::from_fn(|k| self.scalars[k] * own[k])
     }
 
-    /// Half of the length of the edges at each border point, in metres.
-    pub(crate) fn border_lengths(&self, places: &Places) -> BTreeMap<u32, f64> {
-        let mut lengths = BTreeMap::new();
-        for edge in self.elements.iter() {
-            let ends = [edge[0], edge[edge.len() - 1]];
+    /// The length in metres that each of its points stands for: of edges half of those at it, else the mean of its spans. A
+    /// point without an edge is not in the list.
+    pub(crate) fn lengths(&self, places: &Places) -> BTreeMap<u32, f64> {
+        let length = |ends: [u32; 2]| {
             let [a, b] = ends.map(|end| places.point(self.object, end));
-            // An edge between a point and itself counts once.
-            for end in &ends[..if ends[0] == ends[1] { 1 } else { 2 }] {
-                *lengths.entry(*end).or_default() += (b - a).norm() / 2.0;
+            (b - a).norm()
+        };
+        let mut lengths = BTreeMap::new();
+        if self.kind == ElementKind::Edge {
+            for ends in self.elements.iter().map(|edge| [edge[0], edge[edge.len() - 1]]) {
+                // An edge between a point and itself counts once.
+                for end in &ends[..if ends[0] == ends[1] { 1 } else { 2 }] {
+                    *lengths.entry(*end).or_default() += length(ends) / 2.0;
+                }
             }
+        }
+        for at_point in self.spans.chunk_by(|a, b| a[0] == b[0]) {
+            let sum: f64 = at_point.iter().map(|span| length(*span)).sum();
+            lengths.insert(at_point[0][0], sum / at_point.len() as f64);
         }
         lengths
     }

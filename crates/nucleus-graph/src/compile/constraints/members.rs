@@ -225,9 +225,13 @@ impl Compiler<'_> {
                 strangers.push(object);
                 continue;
             };
-            let is_surface = surfaces && members.is_empty();
-            if let Some(mut member) = self.member([constraint, plug.node, object], target, is_surface) {
-                if is_surface {
+            let role = match kind {
+                kinds::WELD_BORDERS => Role::Border,
+                _ if surfaces && members.is_empty() => Role::Surface,
+                _ => Role::Elements,
+            };
+            if let Some(mut member) = self.member([constraint, plug.node, object], target, role) {
+                if role == Role::Surface {
                     member.sheet = self.sheet_of(&member);
                 }
                 members.push(member);
@@ -267,12 +271,12 @@ impl Compiler<'_> {
         if faces.len() > member.elements.len() { faces.clone() } else { Faces::default() }
     }
 
-    /// One member. A whole object that is the surface of a constraint stands for its faces.
+    /// One member.
     fn member(
         &mut self,
         [constraint, component, object]: [NodeId; 3],
         target: MemberObject,
-        is_surface: bool,
+        role: Role,
     ) -> Option<Member> {
         let (faces, points) = match target {
             // The elements of a mesh that can tear are numbered as it was given.
@@ -292,12 +296,23 @@ impl Compiler<'_> {
         let mesh = graph.source(object, &n_base::INPUT_MESH).unwrap_or(object);
         let of = Selected { owner: constraint, object, mesh };
         let elements = Elements::new(&faces, points);
-        let is_whole = graph.node(component).get(&n_component::COMPONENT_TYPE) == n_component::OBJECT;
-        let (kind, chosen) = match is_whole && is_surface && !faces.is_empty() {
-            true => (ElementKind::Face, (0..faces.len() as u32).collect()),
-            false => self.selected(&of, component, &elements),
+        let node = graph.node(component);
+        let is_whole = node.get(&n_component::COMPONENT_TYPE) == n_component::OBJECT;
+        let is_border = node.get(&n_component::ELEMENTS) == n_component::BORDERS;
+        let border = elements.border(ElementKind::Edge);
+        let (kind, chosen) = match role {
+            Role::Surface if is_whole && !faces.is_empty() => {
+                (ElementKind::Face, (0..faces.len() as u32).collect())
+            }
+            // A closed object has no border: its points are welded.
+            Role::Border if (is_whole || is_border) && !border.is_empty() => (ElementKind::Edge, border),
+            _ => self.selected(&of, component, &elements),
         };
         let [owner, named] = [constraint, object].map(|id| self.scene.graph.node(id).name().to_owned());
+        let spans = match role {
+            Role::Border if kind != ElementKind::Edge => elements.spans(),
+            _ => Vec::new(),
+        };
         let corners: BTreeSet<u32> = chosen.iter().flat_map(|at| elements.corners(kind, *at)).collect();
         let selection = NamedSelection {
             owner,
@@ -352,12 +367,36 @@ impl Compiler<'_> {
             kind,
             elements: all,
             behind,
+            spans: with_twins(spans, points, &twins),
             sheet: Faces::default(),
             scalars,
             maps,
             name,
         })
     }
+}
+
+/// The part that a component plays in its constraint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// The elements that it names.
+    Elements,
+    /// The surface of links: a whole object stands for its faces.
+    Surface,
+    /// A border that is welded: a whole object, or its border, stands for its border edges.
+    Border,
+}
+
+/// The spans of points, and of the twins of those that were split, which follow them.
+fn with_twins(mut spans: Vec<[u32; 2]>, points: usize, twins: &[u32]) -> Vec<[u32; 2]> {
+    let given = spans.len();
+    for (twin, &point) in (points as u32..).zip(twins) {
+        let from = spans[..given].partition_point(|span| span[0] < point);
+        let own = spans[from..given].iter().take_while(|span| span[0] == point);
+        let own: Vec<[u32; 2]> = own.map(|span| [twin, span[1]]).collect();
+        spans.extend(own);
+    }
+    spans
 }
 
 /// Whether a kind joins the elements of one component with each other.
