@@ -80,7 +80,7 @@ node_table! {
         /// Manual gauge pressure along the normals; 1 is 1 kPa. It inflates a mesh to five times its size at most.
         PRESSURE: f64 = float("pressure", "pres", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
         /// Excess air inside at the start, in start volumes.
-        START_PRESSURE: f64 = float("startPressure", "stpe", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure");
+        START_PRESSURE: f64 = float("startPressure", "stpe", 0.0).soft(-1.0, 1.0).solved("nucleus_core::constraints::pressure").fixed();
         /// Bulk modulus of the gas; 1 is 1 kPa (air has about 100).
         INCOMPRESSIBILITY: f64 = float("incompressibility", "incm", 5.0).soft(0.0, 200.0).solved("nucleus_core::constraints::pressure");
         /// Damping of the rate of change of the volume.

@@ -30,17 +30,17 @@ node_table! {
     }
     "Component" {
         /// Kind of elements: points, edges, faces, or the object as a whole.
-        COMPONENT_TYPE: Choice = choice("componentType", "ct", 0, &[(0, "None"), (2, "Point"), (3, "Edge"), (4, "Face"), (6, "Object")]).solved("nucleus_graph::compile::constraints");
+        COMPONENT_TYPE: Choice = choice("componentType", "ct", 0, &[(0, "None"), (2, "Point"), (3, "Edge"), (4, "Face"), (6, "Object")]).solved("nucleus_graph::compile::constraints").fixed();
         /// Selected elements: those listed, those on borders, or all.
-        ELEMENTS: Choice = choice("elements", "el", 0, &[(0, "From Indice List"), (1, "Borders"), (2, "All")]).solved("nucleus_graph::compile::constraints");
+        ELEMENTS: Choice = choice("elements", "el", 0, &[(0, "From Indice List"), (1, "Borders"), (2, "All")]).solved("nucleus_graph::compile::constraints").fixed();
         /// Factor on the strength of the constraint.
-        STRENGTH: f64 = float("strength", "stn", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
+        STRENGTH: f64 = float("strength", "stn", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints").fixed();
         /// Factor on the glue strength of the constraint.
-        GLUE_STRENGTH: f64 = float("glueStrength", "gst", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
+        GLUE_STRENGTH: f64 = float("glueStrength", "gst", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints").fixed();
         /// Weight of this side of the links relative to the other.
-        WEIGHT: f64 = float("weight", "wgh", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
+        WEIGHT: f64 = float("weight", "wgh", 1.0).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints").fixed();
         /// Factor on the tangent strength of the constraint.
-        TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 0.5).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints");
+        TANGENT_STRENGTH: f64 = float("tangentStrength", "tst", 0.5).soft(0.0, 1.0).solved("nucleus_graph::compile::constraints").fixed();
         /// The elements listed.
         COMPONENT_INDICES: Vec<u32> = ints("componentIndices", "ci").solved("nucleus_graph::compile::constraints").multi();
     }

@@ -50,6 +50,33 @@ impl Compiler<'_> {
         self.warn_of_bounce(object, &n_base::BOUNCE);
     }
 
+    /// Warns of directions of the nucleus that are zero and switch off what has them.
+    pub(super) fn warn_of_zero_directions(&mut self) {
+        let graph = &self.scene.graph;
+        let (id, node) = (self.program.node, graph.node(self.program.node));
+        let number = |key| graph.is_ever_nonzero(id, key);
+        let directions = [
+            (&nucleus::GRAVITY_DIRECTION, number(&nucleus::GRAVITY), "gravity", "(0, -1, 0)", "gravity: 0"),
+            (&nucleus::WIND_DIRECTION, number(&nucleus::WIND_SPEED), "wind", "(1, 0, 0)", "windSpeed: 0"),
+            (
+                &nucleus::PLANE_NORMAL,
+                graph.is_ever_nonzero(id, &nucleus::USE_PLANE),
+                "ground plane",
+                "(0, 1, 0)",
+                "usePlane: false",
+            ),
+        ];
+        for (key, is_on, what, usual, off) in directions {
+            if is_on && !graph.is_ever_nonzero(id, key) {
+                let (name, row) = (node.name(), key.row.name);
+                let place = self.scene.source.place(&format!("{name}.{row}"));
+                let message = format!("`{name}` has no {what}: its `{row}` is zero");
+                let help = format!("give it a direction, `{row}: {usual}`, or write `{off}`");
+                self.findings.warning(&place, message).help(&help);
+            }
+        }
+    }
+
     /// Warns of a bounce above 1, which counts as 1.
     pub(super) fn warn_of_bounce(&mut self, object: NodeId, key: &Key<f64>) {
         let node = self.scene.graph.node(object);

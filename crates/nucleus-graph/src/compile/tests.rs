@@ -15,6 +15,7 @@ use crate::scene::{Record, read_scene_text};
 
 mod attachments;
 mod budget;
+mod no_effect;
 
 /// A scene of these nodes, over frames 1 to 24.
 fn scene(nodes: &str) -> Scene {

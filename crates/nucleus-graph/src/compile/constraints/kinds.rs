@@ -19,6 +19,10 @@ pub(super) const MATCH: i32 = 6;
 pub(super) const TEARABLE: i32 = 7;
 pub(super) const DISABLE_COLLISION: i32 = 8;
 pub(super) const EXCLUDE_PAIRS: i32 = 9;
+/// `constraintRelation: objectToConstraint`.
+pub(super) const TO_SPACE: i32 = 0;
+/// `constraintMethod: weld`.
+pub(super) const WELD: i32 = 0;
 /// `connectionUpdate: per frame`.
 const PER_FRAME: i32 = 1;
 

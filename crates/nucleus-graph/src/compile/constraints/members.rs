@@ -38,6 +38,7 @@ impl Compiler<'_> {
         let mut sources = Vec::new();
         for node in self.constraints() {
             if Values::new(&self.start, node).pins() {
+                self.warn_of_unused_attributes(node, &[]);
                 continue;
             }
             let before = self.findings.errors();
@@ -46,6 +47,7 @@ impl Compiler<'_> {
                 continue;
             }
             if self.check_members(node, &members) {
+                self.warn_of_unused_attributes(node, &members);
                 sources.extend(self.sources_of(node, members));
             }
         }

@@ -11,6 +11,7 @@
 //! | the nearest of many elements                           | `bvh.rs`     |
 //! | the sheet on which sliding links walk                  | `sheet.rs`   |
 //! | meshes that are split where they can tear              | `tearing.rs`, `split_mesh.rs` |
+//! | attributes without effect beside the others          | `unused.rs`    |
 //! | the attributes of a frame; keyed `enable`              | `frame.rs`   |
 //!
 //! A transform constraint without any attribute of springs pins its points; see `attachments.rs`. Every other kind is
@@ -28,3 +29,4 @@ mod near;
 mod sheet;
 pub(super) mod split_mesh;
 mod tearing;
+mod unused;

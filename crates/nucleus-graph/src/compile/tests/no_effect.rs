@@ -1,0 +1,121 @@
+//! Attributes that are set and have no effect.
+
+use super::*;
+
+/// The warnings of nodes that run, and of the nucleus by its settings.
+fn warnings(nodes: &str) -> Vec<String> {
+    let told = |nodes: &str| program(nodes).warnings().to_vec();
+    told(nodes).into_iter().map(|warning| warning.message).collect()
+}
+
+/// The warnings of a constraint of two sheets, the second 1 m above the first.
+fn of_constraint(attributes: &str) -> Vec<String> {
+    let above = r#""higher": polyPlane(width: 2, height: 2, subdivisions: (1, 1), translate: (0, 1, 0)),
+        "cloth2": nCloth(inputMesh: "higher"),"#;
+    warnings(&(sheet("", "") + above + &format!(r#""k": dynamicConstraint({attributes})"#)))
+}
+
+#[test]
+fn an_attribute_that_a_constraint_of_its_kind_does_not_use_is_a_warning() {
+    let both = r#"components: ["cloth1", "cloth2"]"#;
+    let hold = "points are held at their own places, not in pairs";
+    let no_length = "its links have no length: points are held at their own places";
+    for (attributes, expected) in [
+        (
+            r#"components: ["cloth1"], strength: 1, restLengthMethod: constant, restLength: 0.3"#.to_owned(),
+            vec![("restLengthMethod", no_length), ("restLength", no_length)],
+        ),
+        (
+            r#"components: ["cloth1"], strength: 1, restLengthScale: 0"#.to_owned(),
+            vec![("restLengthScale", no_length)],
+        ),
+        (r#"components: ["cloth1"], connectionDensity: 0.5"#.to_owned(), vec![("connectionDensity", hold)]),
+        (
+            r#"components: ["cloth1"], connectionMethod: withinMaxDistance, maxDistance: 0.01"#.to_owned(),
+            vec![("connectionMethod", hold), ("maxDistance", hold)],
+        ),
+        (format!("type: pointToSurface, {both}, friction: 1"), vec![("friction", "its links do not slide")]),
+        (
+            format!(
+                "type: pointToSurface, {both}, connectionUpdate: perFrame, friction: 1, tangentStrength: 0"
+            ),
+            vec![("friction", "`tangentStrength` is 0")],
+        ),
+        (
+            format!("type: pointToPoint, {both}, localCollide: true"),
+            vec![("localCollide", "no link joins a point with a surface")],
+        ),
+        (
+            format!("type: pointToSurface, {both}, localCollide: true, restLengthMethod: constant"),
+            vec![("localCollide", "`restLength` is 0")],
+        ),
+        (
+            format!("type: pointToSurface, {both}, collideWidthScale: 2"),
+            vec![("collideWidthScale", "`localCollide` is false")],
+        ),
+        (
+            format!("type: pointToPoint, {both}, restLength: 1"),
+            vec![("restLength", "`restLengthMethod` is fromStartDistance")],
+        ),
+        (
+            format!("type: pointToPoint, {both}, restLengthMethod: constant, restLengthScale: 0.5"),
+            vec![("restLengthScale", "`restLengthMethod` is constant")],
+        ),
+    ] {
+        let of = |(name, because): &(&str, &str)| format!("`{name}` of `k` has no effect: {because}");
+        let expected: Vec<String> = expected.iter().map(of).collect();
+        let mut found = of_constraint(&attributes);
+        found.sort_unstable_by_key(|message| expected.iter().position(|other| other == message));
+        assert_eq!(found, expected, "{attributes}");
+    }
+}
+
+#[test]
+fn attributes_that_a_constraint_uses_or_that_have_their_default_are_no_warnings() {
+    let both = r#"components: ["cloth1", "cloth2"]"#;
+    for attributes in [
+        r#"components: ["cloth1"], connectionDensity: 1, connectionMethod: componentOrder"#.to_owned(),
+        format!("type: slideOnSurface, {both}, friction: 1, collideWidthScale: 2"),
+        format!(
+            "type: pointToSurface, {both}, localCollide: true, collideWidthScale: keys([(1, 2), (5, 1)])"
+        ),
+        format!("type: pointToPoint, {both}, restLengthMethod: constant, restLength: 1"),
+        format!("type: slideOnSurface, {both}, constraintMethod: weld, tangentStrength: 0, friction: 1"),
+        format!("type: pointToPoint, {both}, connectionDensity: 0.5, restLengthScale: 0.5"),
+    ] {
+        assert_eq!(of_constraint(&attributes), Vec::<String>::new(), "{attributes}");
+    }
+}
+
+#[test]
+fn a_direction_of_zero_that_switches_gravity_wind_or_the_floor_off_is_a_warning() {
+    for (nucleus, expected) in [
+        ("gravityDirection: (0, 0, 0)", "`nucleus1` has no gravity: its `gravityDirection` is zero"),
+        ("windSpeed: 3, windDirection: (0, 0, 0)", "`nucleus1` has no wind: its `windDirection` is zero"),
+        (
+            "usePlane: true, planeNormal: (0, 0, 0)",
+            "`nucleus1` has no ground plane: its `planeNormal` is zero",
+        ),
+    ] {
+        assert_eq!(warnings(&sheet(nucleus, "")), [expected], "{nucleus}");
+    }
+    for nucleus in [
+        "gravity: 0, gravityDirection: (0, 0, 0)",
+        "gravityDirection: keys([(1, (0, 0, 0)), (9, (0, -1, 0))])",
+    ] {
+        assert_eq!(warnings(&sheet(nucleus, "")), Vec::<String>::new(), "{nucleus}");
+    }
+}
+
+#[test]
+fn attributes_that_are_read_once_cannot_be_keyed() {
+    let at_start = |nodes: &str| {
+        let text = format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}})");
+        let found = read_scene_text(&text, Path::new("test.ron")).expect_err("it cannot be keyed");
+        assert!(found[0].message.ends_with("cannot be keyed: it is read once, at the start"), "{found:?}");
+    };
+    for name in ["strength", "tangentStrength", "glueStrength", "weight"] {
+        at_start(&format!(r#""c": nComponent({name}: keys([(1, 1), (12, 0)]))"#));
+    }
+    at_start(&sheet("", "pressureMethod: volumeTrackingModel, startPressure: keys([(1, 0), (12, 1)])"));
+}
