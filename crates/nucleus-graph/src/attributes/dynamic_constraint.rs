@@ -34,7 +34,7 @@ node_table! {
     "Nucleus (open)" {
         /// Constraint of Maya's menu, which sets the defaults of the other attributes. `transform` alone pins points to its transform; with a strength or another attribute of springs it holds them by springs.
         CONSTRAINT_TYPE: Choice = choice("constraintType", "type", 0, CONSTRAINT_TYPES).solved("nucleus_graph::compile::constraints").fixed().extension();
-        /// The constrained components: `["cloth1.vtx[8:16]", "cloth1.e[border]", "cloth1.where(y > 1.49)", "ball"]`.
+        /// The constrained components: `["cloth1.vtx[8:16]", "cloth1.e[border]", "cloth1.where(y > 1.49)", "ball"]`. A whole object or border stands for its border edges in `weldBorders`.
         COMPONENTS: Vec<Component> = components("components", "components").solved("nucleus_graph::compile::constraints").extension();
         /// Its nucleus. Default: the only one of the scene.
         NUCLEUS: Plugged = node("nucleus", "nucleus", None).solved("nucleus_graph::graph").extension();
@@ -108,7 +108,7 @@ node_table! {
         DAMP: f64 = float("damp", "dmp", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::link::velocity");
         /// Friction of sliding; at 1 nothing slides.
         FRICTION: f64 = float("friction", "frc", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::link::surface");
-        /// Keeps a linked point on its side of the surface that it is linked to.
+        /// Keeps a linked point on its side of the surface that it is linked to, at the contact thickness or where it started nearer.
         LOCAL_COLLIDE: bool = toggle("localCollide", "lcl", false).solved("nucleus_core::constraints::link::surface");
         /// Thickness for that, as a multiple of the contact thickness.
         COLLIDE_WIDTH_SCALE: f64 = float("collideWidthScale", "cws", 1.0).soft(0.0, 1.0).solved("nucleus_core::constraints::link::surface");

@@ -85,3 +85,24 @@ fn connection_density_is_the_share_of_the_welds_of_borders_that_are_made() {
     let half = count(0.5);
     assert!((5..=16).contains(&half), "{half} of 21");
 }
+
+// The distance that was kept shrank with the rest length, which is zero where springs pull to the surface.
+#[test]
+fn local_collide_stops_points_at_the_thickness_where_springs_pull_to_the_surface() {
+    for kind in ["pointToSurface", "slideOnSurface"] {
+        let lowest = |collide: bool| {
+            let nodes = format!(
+                r#""n": nucleus(), "pb": polyPlane(width: 0.6, height: 0.6, subdivisions: (2, 2), translate: (0, 0.1, 0)),
+                "b": nCloth(inputMesh: "pb", thickness: 0.004, selfCollide: false, collide: false),
+                "pk": polyPlane(width: 4, height: 4, subdivisions: (4, 4)), "k": nRigid(inputMesh: "pk", thickness: 0.004),
+                "s": dynamicConstraint(type: {kind}, components: ["k", "b"], strength: 0.001, restLengthScale: 0,
+                    localCollide: {collide}, collideWidthScale: 5)"#
+            );
+            let places = after(&program(&of_nodes(&nodes, "")), 24, "b");
+            places.into_iter().map(|[_, y, _]| f32::from_bits(y)).fold(f32::INFINITY, f32::min)
+        };
+        let kept = lowest(true);
+        assert!((kept - 0.04).abs() < 0.002, "{kind}: {kept} m, and five times 8 mm is 0.04 m");
+        assert!(lowest(false) < 0.0, "{kind}: weak springs alone do not stop it");
+    }
+}

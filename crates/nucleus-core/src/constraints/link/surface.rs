@@ -141,11 +141,11 @@ impl<R: Real> ConstraintLinks<R> {
                 let beyond = (along * outward - rest.abs().max(row.contact_distance)).max(0.0);
                 let c = if (along - rest) * outward > 0.0 { beyond * outward } else { along - rest };
                 let lambda = pull(&sweep.normal, link.strength, c);
-                // Beyond the spring: on its side, a point stays outside of the kept distance, unless it rests nearer.
+                // Beyond the spring: on its side, a point stays outside of the kept distance, unless it started nearer.
                 let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
                 let after = (along - lambda * mobility) * sign;
                 let short =
-                    frame.keep_off.map_or(0.0, |keep_off| (keep_off.min(rest.abs()) - after).max(0.0));
+                    frame.keep_off.map_or(0.0, |keep_off| (keep_off.min(link.rest.abs()) - after).max(0.0));
                 lambda - sign * short / mobility
             }
         };

@@ -161,7 +161,7 @@ impl EvaluationInterval<'_> {
         (placement.linear, self.nucleus.units.point(placement.offset))
     }
 
-    /// The distance in metres that points keep from a surface: the thickness of both sides.
+    /// The distance in metres that points keep from a surface: the thickness of both sides, or a constant rest length below.
     fn kept_distance(&self, source: &ConstraintSource, values: &Values<'_>) -> f64 {
         let of = |object: MemberObject| match object {
             MemberObject::Cloth(cloth) => {
@@ -176,7 +176,12 @@ impl EvaluationInterval<'_> {
         let mut objects: Vec<MemberObject> = source.members.iter().map(|member| member.object).collect();
         objects.dedup();
         let thickness: f64 = objects.into_iter().take(2).map(of).sum();
-        thickness * values.number(&con::COLLIDE_WIDTH_SCALE)
+        let distance = thickness * values.number(&con::COLLIDE_WIDTH_SCALE);
+        // Links of a constant length do not say how near they started.
+        match values.choice(&con::REST_LENGTH_METHOD) == con::CONSTANT_REST_LENGTH.0 {
+            true => distance.min(self.nucleus.units.length(values.number(&con::REST_LENGTH)).abs()),
+            false => distance,
+        }
     }
 
     fn formed_links(
