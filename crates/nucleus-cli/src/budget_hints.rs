@@ -1,5 +1,6 @@
 //! Hints at cloth that hangs by pins or is inflated and that its budget leaves stretched, before a run; the budget that
-//! `autoEvaluations` chose; budgets beyond what single precision resolves; and liquids that need many time steps.
+//! `autoEvaluations` chose; budgets beyond what single precision resolves; liquids that need many time steps; and forces
+//! that depend on the mesh.
 
 use nucleus_core::{COUNT_PERIOD, FrameInput, Liquid, ResistanceModel};
 use nucleus_graph::compile::budget::{Hanging, Inflated, MAX_BUDGET, hanging};
@@ -123,6 +124,29 @@ pub fn liquid_steps(program: &Program) -> Vec<String> {
     hints
 }
 
+/// Hints at cloth whose mass is per area and whose `localForce` is per point, one line each.
+pub fn local_forces(program: &Program) -> Vec<String> {
+    let mut hints = Vec::new();
+    for (nucleus, input) in program.nuclei().iter().zip(program.first_inputs()) {
+        if !matches!(input.resistance, ResistanceModel::Physical { .. }) {
+            continue;
+        }
+        let cloths = nucleus.cloths().zip(nucleus.model().cloths()).zip(&input.cloths);
+        for ((id, cloth), settings) in cloths {
+            let (points, force) = (cloth.surface.positions.len(), settings.local_force.norm());
+            let pushed = name_of(program, id).filter(|_| force > 0.0 && !cloth.surface.faces.is_empty());
+            hints.extend(pushed.map(|name| {
+                format!(
+                    "hint: `localForce` of `{name}` acts on each of its {points} points, {} N in all: a finer mesh is pushed \
+                     harder; a `uniformField` acts on every mesh alike",
+                    figures::number((force * points as f64 * 1e3).round() / 1e3),
+                )
+            }));
+        }
+    }
+    hints
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -205,5 +229,23 @@ mod tests {
         assert_eq!(hints(0.1, 0.073), [tiny]);
         assert_eq!(hints(0.1, 0.0), [""; 0]);
         assert_eq!(hints(1.0, 0.073), [""; 0]);
+    }
+
+    #[test]
+    fn a_force_per_point_on_cloth_of_a_mass_per_area_is_a_hint() {
+        let hints = |nucleus: &str, cloth: &str| {
+            let text = format!(
+                r#"Scene(time: (start: 1, end: 2, fps: 24), nodes: {{"n": nucleus({nucleus}),
+                    "p": polyPlane(subdivisions: (6, 6)), "c": nCloth(inputMesh: "p", {cloth}),
+                    "q": nParticle(position: [(0, 9, 0)], localForce: (1, 0, 0))}})"#
+            );
+            let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("it can be read");
+            local_forces(&compile(&scene).expect("it can run"))
+        };
+        let expected = "hint: `localForce` of `c` acts on each of its 49 points, 0.49 N in all: a finer mesh is pushed \
+            harder; a `uniformField` acts on every mesh alike";
+        assert_eq!(hints("", "localForce: (0.01, 0, 0)"), [expected]);
+        assert!(hints("", "").is_empty());
+        assert!(hints("resistanceModel: classic", "localForce: (0.01, 0, 0)").is_empty());
     }
 }

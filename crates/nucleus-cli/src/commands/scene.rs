@@ -28,6 +28,9 @@ impl Check {
                 output::report(&format!("`{}` can run: {count}\n", self.scene.display()));
                 budget_hints::budgets(&program).iter().for_each(|line| output::report(&format!("{line}\n")));
                 budget_hints::hints(&program).iter().for_each(|hint| output::report(&format!("{hint}\n")));
+                budget_hints::local_forces(&program)
+                    .iter()
+                    .for_each(|hint| output::report(&format!("{hint}\n")));
                 budget_hints::liquid_steps(&program)
                     .iter()
                     .for_each(|hint| output::report(&format!("{hint}\n")));

@@ -92,7 +92,7 @@ node_table! {
         POINT_MASS: f64 = float("pointMass", "pmss", 1.0).min(0.0).soft(0.001, 10.0).unit("kg, or kg/m²").solved("nucleus_graph::compile").fixed();
         /// Factor on the rest length of every link.
         REST_LENGTH_SCALE: f64 = float("restLengthScale", "rlsc", ClothFrame::DEFAULT.rest_length_scale).min(0.0).soft(0.0, 2.0).solved("nucleus_core::constraints::stretch");
-        /// Force on each point of this object.
+        /// Force on each point of this object, in both resistance models: on a mesh of more points it is larger in total.
         LOCAL_FORCE: [f64; 3] = vector("localForce", "lfcr", [0.0, 0.0, 0.0], ["lfcx", "lfcy", "lfcz"]).unit("N").solved("nucleus_core::integrate::predict");
         /// Wind on this object only, added to the solver's wind.
         LOCAL_WIND: [f64; 3] = vector("localWind", "lwnr", [0.0, 0.0, 0.0], ["lwnx", "lwny", "lwnz"]).unit("m/s").solved("nucleus_core::integrate::aerodynamics");
