@@ -14,7 +14,7 @@ use crate::input::{ClothId, PointId};
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
 use crate::particles::first_way::Obstacles;
-use crate::particles::population::{Population, Spawn, close_up};
+use crate::particles::population::{Newborn, Population, Spawn, close_up};
 use crate::particles::pruning::Crowd;
 use crate::particles::ramps::apply_ramps;
 use crate::schedule::Schedule;
@@ -117,7 +117,8 @@ fn add_spawned<R: Real>(
         }
         counters.births += 1;
         let age = spawn.age_of_whole.map_or(0.0, |age| age + length);
-        if population.add(age, spawn.lifespan, spawn.velocity.into()) {
+        let (lifespan, velocity) = (spawn.lifespan, spawn.velocity.into());
+        if population.add(Newborn { age, lifespan, velocity, touches: true }) {
             let row = row_of + population.len() as u32 - 1;
             set_row(state, row as usize, spawn.position, spawn.velocity, mass);
         } else {
@@ -176,7 +177,8 @@ fn add_births<R: Real>(
             continue;
         }
         counters.births += 1;
-        match population.add(age, birth.lifespan, velocity.into()) {
+        let (lifespan, launched) = (birth.lifespan, velocity.into());
+        match population.add(Newborn { age, lifespan, velocity: launched, touches: false }) {
             true => {
                 if let Some(crowd) = &mut crowd {
                     crowd.add(position);

@@ -24,6 +24,19 @@ impl Rotation {
 
 encode_struct!([] Rotation { orientation: [f64; 4], spin: [f64; 3] });
 
+/// What a particle begins its life with.
+#[derive(Debug, Clone, Copy)]
+pub struct Newborn {
+    /// In seconds.
+    pub age: f64,
+    /// In seconds.
+    pub lifespan: f64,
+    /// In m/s.
+    pub velocity: [f64; 3],
+    /// Whether it begins in touch: one that a collision made does not collide there a second time.
+    pub touches: bool,
+}
+
 /// A particle that an event adds, at the place and with the velocity of the collision.
 #[derive(Debug, Clone, Copy)]
 pub struct Spawn {
@@ -158,7 +171,7 @@ impl Population {
         population.ramps.sort_by_key(|ramp| ramp.target != RampTarget::Radius);
         let velocity =
             |at: usize| cloth.start.velocities.get(at).map_or([0.0; 3], |&velocity| velocity.into());
-        (0..points).for_each(|at| population.begin_columns(velocity(at)));
+        (0..points).for_each(|at| population.begin_columns(velocity(at), false));
         population.find_next_death();
         Some(population)
     }
@@ -303,13 +316,13 @@ impl Population {
     }
 
     /// Begins the columns of a particle that only some objects have.
-    fn begin_columns(&mut self, velocity: [f64; 3]) {
+    fn begin_columns(&mut self, velocity: [f64; 3], touches: bool) {
         if self.reads_acceleration() {
             self.last_velocity.push(velocity);
             self.acceleration.push(0.0);
         }
         if !self.events.is_empty() {
-            self.touches.push(false);
+            self.touches.push(touches);
             self.collisions.push(0);
         }
         if self.rotates {
@@ -349,8 +362,9 @@ impl Population {
         self.now += seconds;
     }
 
-    /// Adds a particle of this age. Returns false, with the particle counted, where it has died already.
-    pub fn add(&mut self, age: f64, lifespan: f64, velocity: [f64; 3]) -> bool {
+    /// Adds a particle. Returns false, with the particle counted, where it has died already.
+    pub fn add(&mut self, newborn: Newborn) -> bool {
+        let Newborn { age, lifespan, velocity, touches } = newborn;
         let id = self.next_id;
         self.next_id += 1;
         self.topology += 1;
@@ -362,7 +376,7 @@ impl Population {
         self.born.push(born);
         self.lifespan.push(lifespan);
         self.mass.push(self.birth_mass);
-        self.begin_columns(velocity);
+        self.begin_columns(velocity, touches);
         self.next_death = self.next_death.min(born + lifespan);
         true
     }

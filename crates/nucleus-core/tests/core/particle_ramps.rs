@@ -108,10 +108,14 @@ fn conserve_keeps_its_share_of_the_velocity_in_each_frame_whatever_the_substeps(
 
 /// Drops one particle on the ground with an event, and returns the living particles after it.
 fn dropped(event: CollisionEvent, frames: usize) -> Solver<f32> {
+    dropped_with(ClothFrame { bounce: 0.5, ..balls(0.05) }, event, frames)
+}
+
+/// The same with these settings, without self-collision.
+fn dropped_with(settings: ClothFrame, event: CollisionEvent, frames: usize) -> Solver<f32> {
     let event = CollisionEvent { target: BEADS, ..event };
     let particles = Particles { capacity: 64, radius: 0.05, events: vec![event], ..Particles::default() };
     let mut solver = solver(cloth(&[Vec3::new(0.0, 0.3, 0.0)], particles));
-    let settings = ClothFrame { bounce: 0.5, ..balls(0.05) };
     let alone = SelfCollision { on: false, ..settings.self_collision };
     let settings = ClothFrame { self_collision: alone, ..settings };
     let input = FrameInput { plane: Some(ground(0.0)), cloths: vec![settings], ..frame(4, CLASSIC) };
@@ -158,6 +162,15 @@ fn an_event_happens_at_its_collision_and_new_particles_fly_with_the_rebound() {
     let mut fast = Vec::new();
     narrow.velocities(BEADS, 1.0, &mut fast);
     assert!(fast.len() == 5 && fast.iter().all(|v| (v[1] - fast[0][1]).abs() < 0.3), "{fast:?}");
+}
+
+#[test]
+fn what_a_collision_makes_does_not_collide_there_again() {
+    // Nothing rebounds: the new particles stay where they begin.
+    for event in [CollisionEvent { emit: 5, ..NOTHING }, CollisionEvent { split: 6, ..NOTHING }] {
+        let settings = ClothFrame { bounce: 0.0, ..balls(0.05) };
+        assert_eq!(count(&dropped_with(settings, event.clone(), 8)), 6, "{event:?}");
+    }
 }
 
 #[test]
