@@ -270,6 +270,14 @@ pub enum RestoreError {
         /// Bits per number in this solver.
         wanted: u32,
     },
+    /// It has less room for particles than the model asks for. Rows are numbered by the room, and cannot be added.
+    #[error("the checkpoint has room for {found} particles of an object that can have {wanted}")]
+    LittleRoom {
+        /// Particles that the saved object can have.
+        found: u64,
+        /// Particles that the object of this model can have.
+        wanted: u64,
+    },
 }
 
 /// The bytes with their kind (a name and a version) in front and a checksum behind.

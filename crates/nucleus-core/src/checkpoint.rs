@@ -35,7 +35,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver12";
+const KIND: [u8; 8] = *b"solver13";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -53,7 +53,8 @@ pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
 
 /// A solver that continues from where one of the same model was saved; see [`Solver::restored`].
 ///
-/// It has the room for particles of the saved one, whatever the builder says, because rows are numbered by it.
+/// It has the room for particles of the saved one, because rows are numbered by it, and refuses a builder that asks for
+/// more: births would be lost.
 pub fn restore<R: Real>(
     mut builder: ModelBuilder,
     threads: usize,
@@ -65,9 +66,7 @@ pub fn restore<R: Real>(
         return Err(RestoreError::Scalar { found: 8 * u32::from(scalar), wanted: 8 * R::SIZE as u32 });
     }
     let capacities: Vec<u64> = Encode::decode(&mut from).ok_or(RestoreError::Damaged)?;
-    if !set_capacities(&mut builder, &capacities, bytes.len()) {
-        return Err(RestoreError::OtherModel);
-    }
+    set_capacities(&mut builder, &capacities, bytes.len())?;
     let mut solver = Solver::build(builder, threads);
     if u64::decode(&mut from).ok_or(RestoreError::Damaged)? != fingerprint(&solver) {
         return Err(RestoreError::OtherModel);
@@ -86,9 +85,9 @@ pub fn restore<R: Real>(
 /// Bytes of a row in the columns that every checkpoint stores, at least.
 const ROW_BYTES: u64 = size_of::<[f64; 3]>() as u64;
 
-/// Gives each object of particles the room that it had; false where the objects differ. A damaged number must not take
-/// more memory than a checkpoint of so many bytes can fill.
-fn set_capacities(builder: &mut ModelBuilder, capacities: &[u64], bytes: usize) -> bool {
+/// Gives each object of particles the room that it had. A damaged number must not take more memory than a checkpoint of so
+/// many bytes can fill.
+fn set_capacities(builder: &mut ModelBuilder, capacities: &[u64], bytes: usize) -> Result<(), RestoreError> {
     let mut objects: Vec<_> = builder.cloths.iter_mut().filter(|cloth| cloth.particles.is_some()).collect();
     let is_valid = |cloth: &&mut Cloth, capacity: u64| {
         capacity >= cloth.surface.positions.len() as u64 && capacity <= bytes as u64 / ROW_BYTES
@@ -96,14 +95,16 @@ fn set_capacities(builder: &mut ModelBuilder, capacities: &[u64], bytes: usize) 
     if objects.len() != capacities.len()
         || !objects.iter().zip(capacities).all(|(cloth, &capacity)| is_valid(cloth, capacity))
     {
-        return false;
+        return Err(RestoreError::OtherModel);
     }
-    for (particles, &capacity) in
-        objects.iter_mut().filter_map(|cloth| cloth.particles.as_mut()).zip(capacities)
+    for (particles, &found) in objects.iter_mut().filter_map(|cloth| cloth.particles.as_mut()).zip(capacities)
     {
-        particles.capacity = capacity as usize;
+        let wanted = std::mem::replace(&mut particles.capacity, found as usize) as u64;
+        if wanted > found {
+            return Err(RestoreError::LittleRoom { found, wanted });
+        }
     }
-    true
+    Ok(())
 }
 
 /// Stores everything but the pairs. It names every field, so a new one does not compile until it is stored or named as
@@ -147,6 +148,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     touches.encode(out);
     material_maps.kept_gaps.encode(out);
     state.save(out);
+    motions_without_velocity(state).encode(out);
     collider_states.save(out);
     cloth_contacts.save(out);
     ground.save(out);
@@ -167,6 +169,10 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     load_column(&mut contact.touches, from)?;
     contact.material_maps.kept_gaps = Encode::decode(from)?;
     state.load(from)?;
+    state.displaced = Encode::decode(from)?;
+    let is_ascending = state.displaced.is_sorted_by(|(row, _), (next, _)| row < next);
+    let is_last_valid = state.displaced.last().is_none_or(|&(row, _)| (row as usize) < state.anchor.len());
+    (is_ascending && is_last_valid).then_some(())?;
     for population in &mut state.populations {
         population.restored()?;
         let cloth = &mut model.cloths[population.cloth()];
@@ -182,6 +188,16 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     contact.ground.load(from)?;
     contact.pair_filter.load(from)?;
     links.load(from)
+}
+
+/// The points that contact has displaced without velocity in the last time step, in order, and their motion in m/s: what
+/// an observer sees of a restored state, and an expression reads of a particle.
+fn motions_without_velocity<R: Real>(state: &State<R>) -> Vec<(u32, [R; 3])> {
+    let moved = |row: u32| {
+        let (seen, own) = (state.seen_velocity(row), state.velocity[row as usize].xyz());
+        (seen != own.map(R::to_f64)).then(|| (row, seen.map(R::from_f64)))
+    };
+    (0..state.velocity.len() as u32).filter_map(moved).collect()
 }
 
 /// Contacts of a cloth near a collider that moves are valid for one frame only: the checkpoint keeps of them the points

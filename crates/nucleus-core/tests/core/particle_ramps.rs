@@ -217,6 +217,13 @@ fn a_checkpoint_continues_ramps_and_events_with_the_same_bits() {
     (0..14).for_each(|k| _ = whole.step(&input(k), &mut ()));
     let saved = whole.save();
     let mut resumed = Solver::<f32>::restored(builder, 2, &saved).expect("a valid checkpoint");
+    // Expressions read these before the next step.
+    let seen = [&whole, &resumed].map(|solver| {
+        let mut fast = Vec::new();
+        solver.velocities(BEADS, 1.0, &mut fast);
+        fast
+    });
+    assert!(seen[0] == seen[1]);
     for k in 14..40 {
         whole.step(&input(k), &mut ());
         resumed.step(&input(k), &mut ());
