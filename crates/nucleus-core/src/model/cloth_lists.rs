@@ -213,9 +213,10 @@ impl ListCompiler<'_> {
         }
     }
 
-    /// A vertex map by row; empty where there is none.
+    /// A vertex map by row; empty where there is none. Rows for particles yet to be born have a factor of 1.
     fn by_row(&self, map: &[f64]) -> Vec<f64> {
-        self.rows().filter(|_| !map.is_empty()).map(|row| map[self.maps().point(row)]).collect()
+        let factor = |row: u32| map.get(self.maps().point(row)).copied().unwrap_or(1.0);
+        self.rows().filter(|_| !map.is_empty()).map(factor).collect()
     }
 
     fn maps(&self) -> MapReader<'_> {

@@ -3,7 +3,7 @@
 use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 use nucleus_core::{
     Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements,
-    FrameInput, Mass, ModelBuilder, ParticleAge, Particles, Pin, ResistanceModel, RestoreError,
+    FrameInput, Mass, ModelBuilder, ParticleAge, Particles, Pin, PointId, ResistanceModel, RestoreError,
     SelfCollision, Solver, StateView, Surface,
 };
 
@@ -174,6 +174,16 @@ fn births_beyond_the_room_or_at_no_position_are_refused_and_counted() {
     let report = solver.step(&input, &mut ());
     assert_eq!((report.births, report.births_refused, report.particles), (2, 2, 3));
     assert!(report.finite);
+}
+
+#[test]
+fn particles_of_given_masses_have_room_for_others_of_the_mass_at_birth() {
+    let mut cloth = room(5, &[Vec3::zeros(), Vec3::x()], &[], 2.0);
+    cloth.vertex_maps.mass = vec![0.5, 4.0];
+    let mut solver = solver(cloth, 1);
+    let births = vec![birth(0.5, Vec3::y(), Vec3::zeros(), 1.0)];
+    solver.step(&FrameInput { births, cloths: vec![free()], ..frame(2, CLASSIC) }, &mut ());
+    assert_eq!([0, 1, 2].map(|at| solver.mass(ClothId(0), PointId(at))), [1.0, 8.0, 2.0]);
 }
 
 #[test]

@@ -109,7 +109,7 @@ node_table! {
         VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0").elsewhere("only particles have initial places of their own; cloth has `startPositions`");
         /// Initial accelerations.
         ACCELERATION0: Vec<[f64; 3]> = vectors("acceleration0", "acc0").elsewhere("forces give the acceleration at the start as at any time");
-        /// Initial masses.
+        /// Initial masses in kilograms; particles that are emitted later have `pointMass`.
         MASS0: Vec<f64> = floats("mass0", "mas0").solved("nucleus_graph::compile::particle_ramps");
         /// Initial identifiers.
         PARTICLE_ID0: Vec<f64> = floats("particleId0", "id0").solved("nucleus_graph::compile::particle_ramps");
