@@ -177,7 +177,7 @@ impl ResumedRun {
     }
 
     /// The simulation at the last intact checkpoint up to frame `latest`, and the frame of that checkpoint. Without a
-    /// checkpoint, the simulation at its start.
+    /// checkpoint, or where the frames to solve need more room for particles than it has, the simulation at its start.
     pub fn restored<R: Real>(
         &mut self,
         program: &Program,
@@ -193,30 +193,35 @@ impl ResumedRun {
             };
             match found {
                 Ok(simulation) => return Ok((simulation, frame)),
+                // Earlier checkpoints have no more room.
+                Err(error @ RestoreError::LittleRoom { .. }) => {
+                    return self.restarted(program, threads, &error.to_string());
+                }
                 Err(error @ (RestoreError::Damaged | RestoreError::OtherVersion)) => {
                     say!("warning: checkpoint of frame {frame}: {error}; the previous checkpoint is used");
                 }
                 Err(error) => bail!("{} cannot be resumed: {error}", self.name()),
             }
         }
-        let start = self.cache.run().start;
-        if let Some(from) = self.cache.run().extra.get("from") {
-            bail!(
-                "{} has no intact checkpoint up to frame {latest}, and its initial state is that of `{from}`: run it again",
-                self.name()
-            );
+        self.restarted(program, threads, &format!("there is no intact checkpoint up to frame {latest}"))
+    }
+
+    /// The simulation at its start, if the scene alone gives that; `reason` says why no checkpoint is used.
+    fn restarted<R: Real>(
+        &self,
+        program: &Program,
+        threads: usize,
+        reason: &str,
+    ) -> Result<(Simulation<R>, i32)> {
+        let (name, run) = (self.name(), self.cache.run());
+        if let Some(from) = run.extra.get("from") {
+            bail!("{name}: {reason}, and its initial state is that of `{from}`: run it again");
         }
-        if self.cache.run().extra.contains_key(SEED) {
-            bail!(
-                "{} has no intact checkpoint up to frame {latest}, and its start is displaced by a seed: run it again",
-                self.name()
-            );
+        if run.extra.contains_key(SEED) {
+            bail!("{name}: {reason}, and its start is displaced by a seed: run it again");
         }
-        say!(
-            "{} has no intact checkpoint up to frame {latest}: every frame is solved again from frame {start}",
-            self.name()
-        );
-        Ok((Simulation::new(program, threads), start))
+        say!("{name}: {reason}: every frame is solved again from frame {}", run.start);
+        Ok((Simulation::new(program, threads), run.start))
     }
 
     /// The scalar that the run computes with.

@@ -4,6 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use nucleus_cache::Playback;
+
 use crate::sample::{assert_refused, cache, folder, nucleus, scene, stderr, stdout};
 
 /// The bytes of a cache of twelve frames with a checkpoint at every fourth.
@@ -150,6 +152,47 @@ fn a_run_without_checkpoints_is_solved_again_from_its_start() {
     let output = resume(folder.path(), &["--at", "4"]);
     assert!(stderr(&output).contains("every frame is solved again from frame 1"), "{}", stderr(&output));
     assert!(fs::read(folder.path().join("x.mcap")).unwrap() == whole);
+}
+
+/// Runs emitted particles with these attributes up to a frame, with a checkpoint at every fifth.
+fn emit(folder: &Path, attributes: &str, end: u32, out: &str) {
+    let text = format!(
+        "Scene(time: (start: 1, end: {end}, fps: 24), nodes: {{ \"n\": nucleus(gravity: 0), \
+         \"p\": nParticle({attributes}), \"e\": pointEmitter(target: \"p\", rate: 60) }})"
+    );
+    fs::write(folder.join("drops.ron"), text).unwrap();
+    let output = nucleus(folder, &["run", "drops.ron", "--checkpoint", "5", "-o", out]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+/// The positions of the only object at the end of a frame.
+fn positions(folder: &Path, cache: &str, frame: i32) -> Vec<[f32; 3]> {
+    let mut cache = Playback::open(folder.join(cache)).unwrap();
+    let moment = cache.end_of(frame).unwrap();
+    cache.positions(0, moment).unwrap()
+}
+
+#[test]
+fn a_run_that_is_continued_beyond_its_end_emits_as_a_longer_run_does() {
+    let folder = folder();
+    emit(folder.path(), "selfCollide: false", 10, "x.mcap");
+    emit(folder.path(), "selfCollide: false", 60, "whole.mcap");
+    let output = resume(folder.path(), &["--to", "60"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the checkpoint has room for 32 particles"), "{}", stderr(&output));
+    let whole = positions(folder.path(), "whole.mcap", 60);
+    assert!(whole.len() > 140 && positions(folder.path(), "x.mcap", 60) == whole, "{}", whole.len());
+    // Now there is room for some more frames.
+    let output = resume(folder.path(), &["--to", "62"]);
+    assert!(!stderr(&output).contains("solved again"), "{}", stderr(&output));
+}
+
+#[test]
+fn an_expression_that_reads_velocities_resumes_with_the_same_bytes() {
+    let folder = folder();
+    emit(folder.path(), "runtimeExpression: \"vx = 1\"", 20, "x.mcap");
+    let whole = fs::read(folder.path().join("x.mcap")).unwrap();
+    assert!(resumed(folder.path(), &["--at", "17"]) == whole);
 }
 
 #[test]
