@@ -8,9 +8,9 @@ use std::str::FromStr;
 
 use anyhow::{Context, Result, bail, ensure};
 use nucleus_cache::{ObjectKind, Playback};
-use nucleus_graph::attributes::{Attribute, Value, n_base, n_particle};
+use nucleus_graph::attributes::{Attribute, Value, n_base, n_particle, particle};
 use nucleus_graph::compile::{self, Object, Program};
-use nucleus_graph::graph::Setting;
+use nucleus_graph::graph::{NodeId, Setting};
 use nucleus_graph::scene::Scene;
 
 use crate::output::say;
@@ -56,7 +56,7 @@ impl InitialState {
         let moment = files::moment(&cache, self.frame)
             .with_context(|| format!("cannot start from `{}`", self.cache.display()))?;
         let scale = program.units_per_metre() / cache.run().units_per_metre;
-        let mut has_velocities = true;
+        let (mut has_velocities, mut ageless) = (true, Vec::new());
         for cloth in cloths {
             let object = self.matching(&mut cache, moment, cloth)?;
             let positions = cache.positions(object, moment)?;
@@ -73,6 +73,19 @@ impl InitialState {
             };
             set_column(&mut scene, cloth, rows[0], &positions, scale)?;
             set_column(&mut scene, cloth, rows[1], &velocities, scale)?;
+            if cloth.radius.is_some() {
+                empty_filling(&mut scene, cloth)?;
+            }
+            if cloth.varies && !positions.is_empty() && !has_ages(&scene, cloth) {
+                ageless.push(format!("`{}`", cloth.name));
+            }
+        }
+        if !ageless.is_empty() {
+            say!(
+                "warning: a cache holds no ages, numbers and lifespans of particles: those of {} begin as newborn; give them \
+                 with `age0`, `particleId0` and `lifespanPP`",
+                ageless.join(", ")
+            );
         }
         if !has_velocities {
             say!(
@@ -132,6 +145,26 @@ fn estimated_velocities(cache: &mut Playback, object: usize, moment: usize) -> R
     Ok(each.collect())
 }
 
+/// The particles of a cache replace those that fill a box or a mesh: they are among them.
+fn empty_filling(scene: &mut Scene, particles: &Object) -> Result<()> {
+    let node = node_of(scene, particles)?;
+    for row in [&n_particle::MINIMUM_CORNER.row, &n_particle::MAXIMUM_CORNER.row, &n_particle::FILL_MESH.row]
+    {
+        scene.graph.unset(node, row);
+    }
+    Ok(())
+}
+
+/// Whether the scene gives the ages of the particles at the start.
+fn has_ages(scene: &Scene, particles: &Object) -> bool {
+    let node = scene.graph.find(&particles.name);
+    node.is_some_and(|node| scene.graph.is_given(node, &particle::AGE0))
+}
+
+fn node_of(scene: &Scene, object: &Object) -> Result<NodeId> {
+    scene.graph.find(&object.name).with_context(|| format!("there is no `{}`", object.name))
+}
+
 /// Sets an attribute with a vector per point. `scale` converts units of the cache to units of the scene.
 fn set_column(
     scene: &mut Scene,
@@ -140,7 +173,7 @@ fn set_column(
     column: &[[f32; 3]],
     scale: f64,
 ) -> Result<()> {
-    let node = scene.graph.find(&cloth.name).with_context(|| format!("there is no `{}`", cloth.name))?;
+    let node = node_of(scene, cloth)?;
     let column = column.iter().map(|vector| vector.map(|x| f64::from(x) * scale)).collect();
     scene.graph.set(node, row, Setting::Fixed(Value::Vectors(column)))?;
     Ok(())

@@ -72,6 +72,44 @@ fn velocities_that_were_not_recorded_are_estimated_with_a_warning() {
     assert!(farthest(&fast.unwrap(), &expected.collect::<Vec<_>>()) < 1e-2);
 }
 
+/// Writes a scene of five frames with these nodes.
+fn particles(folder: &Path, nodes: &str) {
+    let text = format!("Scene(time: (start: 1, end: 5, fps: 24), nodes: {{ \"n\": nucleus(), {nodes} }})");
+    fs::write(folder.join("drape.ron"), text).unwrap();
+}
+
+#[test]
+fn particles_of_a_cache_replace_those_that_fill_a_box_or_a_mesh() {
+    let folder = folder();
+    let of_box = "minimumCorner: (-0.1, 0, -0.1), maximumCorner: (0.1, 0.2, 0.1)";
+    for fill in [of_box, r#"fillMesh: "ball""#] {
+        let ball = r#""ball": polySphere(radius: 0.15)"#;
+        particles(folder.path(), &format!(r#"{ball}, "p": nParticle({fill}, radius: 0.05)"#));
+        run(folder.path(), &["--velocities", "-o", "whole.mcap", "--force"]);
+        let output =
+            run(folder.path(), &["--from", "whole.mcap@5", "--frames", "1", "-o", "rest.mcap", "--force"]);
+        assert_eq!(
+            (output.status.code(), stderr(&output).contains("ages")),
+            (Some(0), false),
+            "{}",
+            stderr(&output)
+        );
+        assert_eq!(state(folder.path(), "rest.mcap", 1).0, state(folder.path(), "whole.mcap", 5).0, "{fill}");
+    }
+}
+
+#[test]
+fn particles_that_start_from_a_cache_without_their_ages_are_warned_of() {
+    let folder = folder();
+    let emitted =
+        r#""p": nParticle(lifespanMode: constant, lifespan: 1), "e": pointEmitter(target: "p", rate: 48)"#;
+    particles(folder.path(), emitted);
+    run(folder.path(), &["--velocities", "-o", "whole.mcap"]);
+    let output = run(folder.path(), &["--from", "whole.mcap@5", "-o", "rest.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("those of `p` begin as newborn"), "{}", stderr(&output));
+}
+
 #[test]
 fn an_initial_state_is_converted_between_space_scales() {
     let folder = folder();
