@@ -101,8 +101,20 @@ impl<R: Real> RunLoop<R> {
         let (checks, frames, objects) = (judge.outcomes(), (start, last), simulation.objects());
         let hash = combined_hash(&simulation);
         let flat = flat_cloths(&simulation);
-        let summary =
-            Summary { hash, statistics, ending, checks, audit, recorded, unfinished, frames, objects, flat };
+        let fields = simulation.program().field_names().collect();
+        let summary = Summary {
+            hash,
+            statistics,
+            ending,
+            checks,
+            audit,
+            recorded,
+            unfinished,
+            frames,
+            objects,
+            fields,
+            flat,
+        };
         let (outcome, text, report) = (summary.outcome(), summary.as_text()?, summary.as_json());
         Ok(Finished { outcome, text, report })
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use nucleus_core::InvalidInput;
+use nucleus_core::{InvalidInput, MAX_COORDINATE};
 use nucleus_graph::audit::Audit;
 use nucleus_graph::checks::{self, Bound};
 use nucleus_graph::compile::{Object, ObjectKind};
@@ -30,6 +30,8 @@ pub struct Summary<'a> {
     pub frames: (i64, i64),
     /// The objects of the run.
     pub objects: &'a [Object],
+    /// The names of its fields.
+    pub fields: Vec<&'a str>,
     /// Cloths that started flat, are pressed together, and are flat still.
     pub flat: Vec<String>,
 }
@@ -56,6 +58,10 @@ impl Summary<'_> {
             .is_none_or(|audit| audit.account().is_clean() && self.statistics.passed_through_before == 0)
             && self.checks.iter().all(|check| check.passed || !self.is_evaluated(check))
             && self.unresolved_contact().is_empty()
+    }
+
+    fn sanitized(&self, input: InvalidInput) -> String {
+        sanitized(input, self.objects, &self.fields)
     }
 
     fn unresolved_contact(&self) -> Vec<String> {
@@ -109,7 +115,7 @@ impl Summary<'_> {
         }
         if let Some((input, frame)) = statistics.first_sanitized {
             let count = figures::count(statistics.sanitized as usize, "value");
-            writeln!(text, "frame {frame}: {} ({count} sanitized in all)", sanitized(input, self.objects))?;
+            writeln!(text, "frame {frame}: {} ({count} sanitized in all)", self.sanitized(input))?;
         }
         for outcome in self.checks {
             writeln!(text, "{}", check_line(outcome, self.is_evaluated(outcome)))?;
@@ -201,7 +207,7 @@ impl Summary<'_> {
             "warning": self.warning(),
             "hint": self.hint(),
             "sanitized": statistics.sanitized,
-            "first_sanitized": statistics.first_sanitized.map(|(input, _)| sanitized(input, self.objects)),
+            "first_sanitized": statistics.first_sanitized.map(|(input, _)| self.sanitized(input)),
             "checks": checks,
             "audit": self.audit.map(|audit| audit_json(audit, statistics.passed_through_before)),
             "cache": path,
@@ -223,7 +229,7 @@ fn over_run(count: &Count) -> Value {
 }
 
 /// `` point 17 of `ball` had no usable position and kept its last one ``.
-fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
+fn sanitized(input: InvalidInput, objects: &[Object], fields: &[&str]) -> String {
     let name = |kind: ObjectKind| {
         objects.iter().find(|object| object.kind == kind).map_or("an object", |object| object.name.as_str())
     };
@@ -271,6 +277,11 @@ fn sanitized(input: InvalidInput, objects: &[Object]) -> String {
         InvalidInput::Collider(id) => {
             format!("an attribute of `{}` had no usable value", name(collider(id)))
         }
+        InvalidInput::Field(at) => format!(
+            "`{}` did not act: its `magnitude`, or another of its attributes or its place, is not finite or is beyond \
+             {MAX_COORDINATE:e} in SI units",
+            fields.get(at as usize).copied().unwrap_or("a field")
+        ),
         InvalidInput::Duration => {
             "the duration of the frame was not above zero; the frame was skipped".to_owned()
         }
@@ -377,10 +388,13 @@ mod tests {
             object("silk", ObjectKind::Cloth(ClothId(0))),
             object("ball", ObjectKind::Collider(ColliderId(0))),
         ];
-        let said = sanitized(InvalidInput::ColliderPoint(ColliderId(0), PointId(17)), &objects);
+        let said = sanitized(InvalidInput::ColliderPoint(ColliderId(0), PointId(17)), &objects, &[]);
         assert_eq!(said, "point 17 of `ball` had no usable position and kept its last one");
-        assert!(sanitized(InvalidInput::Cloth(ClothId(0)), &objects).contains("`silk`"));
-        let said = sanitized(InvalidInput::RuntimeExpression(ClothId(0)), &objects);
+        assert!(sanitized(InvalidInput::Cloth(ClothId(0)), &objects, &[]).contains("`silk`"));
+        let said = sanitized(InvalidInput::RuntimeExpression(ClothId(0)), &objects, &[]);
+        assert!(
+            sanitized(InvalidInput::Field(1), &objects, &["gust", "push"]).starts_with("`push` did not act")
+        );
         assert!(said.starts_with("`runtimeExpression` of `silk` gave a value that is not a finite number"));
     }
 }

@@ -172,7 +172,12 @@ impl<R: Real> Simulation<R> {
         input.particle_changes = interval.particle_changes(solver, invalid_results);
         let (invalid_results, births_refused) =
             (std::mem::take(invalid_results), std::mem::take(&mut run.attachments.births_refused));
-        let complete = |report| with_evaluation(report, invalid_results, births_refused);
+        let complete = |report| {
+            let mut report = with_evaluation(report, invalid_results, births_refused);
+            let first = report.sanitized.first.map(|input| self.program.numbered_on(call.nucleus, input));
+            report.sanitized.first = first;
+            report
+        };
         change(&run.solver, &mut input);
         let first_cloth = self.program.nuclei()[call.nucleus].cloths().start;
         let span = [observers.done, observers.done + call.substeps];

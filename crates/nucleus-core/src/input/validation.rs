@@ -64,8 +64,8 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
     for (id, collider) in (0..).map(ColliderId).zip(&mut frame.colliders) {
         sanitize_collider(id, collider, last.collider(id), &mut sanitized);
     }
-    if sanitize_fields(&mut frame.fields, last.objects()[0]) {
-        sanitized.add(InvalidInput::Setting);
+    for at in sanitize_fields(&mut frame.fields, last.objects()[0]) {
+        sanitized.add(InvalidInput::Field(at));
     }
     sanitize_pins(&mut frame, last, &mut sanitized);
     for (at, constraint) in (0..).zip(&mut frame.constraints) {

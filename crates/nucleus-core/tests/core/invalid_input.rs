@@ -188,7 +188,12 @@ fn exclusions_targets_and_changes_of_nothing_are_dropped_and_reported() {
         targets: vec![(ClothId(4), 1.0)],
     };
     let (found, count, first, _) = run(|input| input.fields = vec![field.clone()]);
-    assert_eq!((found, count, first), (expected, 1, Some(InvalidInput::Setting)));
+    assert_eq!((found, count, first), (expected, 1, Some(InvalidInput::Field(0))));
+    let sound = Field { targets: Vec::new(), ..field.clone() };
+    let endless = Field { kind: FieldKind::Uniform { force: Vec3::x() * 1e30 }, ..sound.clone() };
+    let (found, count, first, _) =
+        run(|input| input.fields = vec![sound.clone(), endless.clone(), field.clone()]);
+    assert_eq!((found, count, first), (expected, 2, Some(InvalidInput::Field(1))));
     let change = ParticleChange { cloth: ClothId(0), place: 0, velocity: None, lifespan: Some(1.0) };
     let (found, count, first, _) = run(|input| input.particle_changes = vec![change]);
     assert_eq!((found, count, first), (expected, 1, Some(InvalidInput::ParticleChange(ClothId(0)))));

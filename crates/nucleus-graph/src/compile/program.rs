@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use nucleus_core::{Cloth, ClothId, ColliderId, Faces, ModelBuilder, RampTarget};
+use nucleus_core::{Cloth, ClothId, ColliderId, Faces, InvalidInput, ModelBuilder, RampTarget};
 
 use crate::attributes::{ElementKind, FromValue, Key};
 use crate::checks::Check;
@@ -153,6 +153,35 @@ impl Program {
     /// All objects: cloths, then colliders, each in the order of their ids.
     pub fn objects(&self) -> &[Object] {
         &self.data.objects
+    }
+
+    /// The names of its fields. Fields are numbered on from one nucleus to the next.
+    pub fn field_names(&self) -> impl Iterator<Item = &str> {
+        let fields = self.nuclei().iter().flat_map(|nucleus| &nucleus.fields);
+        fields.map(|field| self.graph().node(field.node).name())
+    }
+
+    /// An invalid input of a nucleus by the ids of the program.
+    pub(crate) fn numbered_on(&self, nucleus: usize, input: InvalidInput) -> InvalidInput {
+        let (before, own) = (&self.nuclei()[..nucleus], &self.nuclei()[nucleus]);
+        let cloth = |id: ClothId| ClothId(own.first_cloth + id.0);
+        let collider = |id: ColliderId| ColliderId(own.first_collider + id.0);
+        let first_field = before.iter().map(|nucleus| nucleus.fields.len() as u32).sum::<u32>();
+        match input {
+            InvalidInput::ColliderPoint(id, point) => InvalidInput::ColliderPoint(collider(id), point),
+            InvalidInput::ColliderMotion(id) => InvalidInput::ColliderMotion(collider(id)),
+            InvalidInput::Collider(id) => InvalidInput::Collider(collider(id)),
+            InvalidInput::Pin(id, point) => InvalidInput::Pin(cloth(id), point),
+            InvalidInput::NoSuchPin(id, point) => InvalidInput::NoSuchPin(cloth(id), point),
+            InvalidInput::InputMesh(id) => InvalidInput::InputMesh(cloth(id)),
+            InvalidInput::Birth(id) => InvalidInput::Birth(cloth(id)),
+            InvalidInput::ParticleChange(id) => InvalidInput::ParticleChange(cloth(id)),
+            InvalidInput::Cloth(id) => InvalidInput::Cloth(cloth(id)),
+            InvalidInput::CreationExpression(id) => InvalidInput::CreationExpression(cloth(id)),
+            InvalidInput::RuntimeExpression(id) => InvalidInput::RuntimeExpression(cloth(id)),
+            InvalidInput::Field(at) => InvalidInput::Field(first_field + at),
+            other => other,
+        }
     }
 
     /// The cameras over all frames, in the order of their names.

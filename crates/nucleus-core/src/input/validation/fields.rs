@@ -5,18 +5,21 @@ use crate::input::fields::{Field, FieldKind, Noise, Reach, Volume};
 
 /// Whether all fields are valid, and act on some of `cloths` objects.
 pub(super) fn are_valid_fields(fields: &[Field], cloths: usize) -> bool {
-    let is_target = |field: &Field| field.targets.iter().all(|(target, _)| target.index() < cloths);
-    fields.iter().all(|field| is_valid_field(field) && is_target(field))
+    fields.iter().all(|field| is_valid_field(field) && has_targets(field, cloths))
 }
 
-/// Removes invalid fields and targets; whether there were any.
-pub(super) fn sanitize_fields(fields: &mut Vec<Field>, cloths: usize) -> bool {
-    if are_valid_fields(fields, cloths) {
-        return false;
-    }
+/// Removes invalid fields and targets. Returns the places of the fields that were invalid or had an invalid target.
+pub(super) fn sanitize_fields(fields: &mut Vec<Field>, cloths: usize) -> Vec<u32> {
+    let is_sound = |field: &Field| is_valid_field(field) && has_targets(field, cloths);
+    let unsound = (0..).zip(fields.iter()).filter(|(_, field)| !is_sound(field)).map(|(at, _)| at).collect();
     fields.retain(is_valid_field);
     fields.iter_mut().for_each(|field| field.targets.retain(|(target, _)| target.index() < cloths));
-    true
+    unsound
+}
+
+/// Whether all targets of a field are among `cloths` objects.
+fn has_targets(field: &Field, cloths: usize) -> bool {
+    field.targets.iter().all(|(target, _)| target.index() < cloths)
 }
 
 fn numbers(numbers: &[f64]) -> bool {

@@ -47,9 +47,12 @@ pub enum InvalidInput {
     /// An attribute of a collider.
     #[error("an attribute of collider {} is not a usable number", .0.0)]
     Collider(ColliderId),
-    /// Gravity, wind, the ground plane, a field or another setting of the solver.
-    #[error("gravity, wind, the ground plane, a field or another setting is not a usable number")]
+    /// Gravity, wind, the ground plane or another setting of the solver.
+    #[error("gravity, wind, the ground plane or another setting is not a usable number")]
     Setting,
+    /// A number of a field, or a target that does not exist; by the index of the field.
+    #[error("field {0} has a number that is not usable, or a target that does not exist")]
+    Field(u32),
     /// A number of a constraint, or a link that refers to points that do not exist; by the index of the constraint.
     #[error("constraint {0} has a number that is not usable, or a link to points that do not exist")]
     Constraint(u32),
