@@ -27,7 +27,9 @@ pub(super) fn warn_of_idle_nodes(scene: &Scene, broken: &BTreeSet<NodeId>, findi
         } else if targets.all(|to| graph.node(to.node).node_type().is_a(&n_rigid::N_RIGID)) {
             let help = "colliders follow their meshes; name cloth or particles";
             warn(id, format!("`{name}` acts on colliders only, which no force moves"), help);
-        } else if let Some(key) = direction_of(node.node_type()).filter(|key| !graph.is_ever_nonzero(id, key))
+        } else if let Some(key) = direction_of(node.node_type())
+            && !graph.is_ever_nonzero(id, key)
+            && !acts_without_direction(graph, id)
         {
             let help = format!("give it one: `{}: (0, 1, 0)`", key.row.name);
             warn(id, format!("`{name}` acts on nothing: its `{}` is zero", key.row.name), &help);
@@ -61,6 +63,16 @@ fn direction_of(node_type: &'static NodeType) -> Option<&'static Key<[f64; 3]>> 
         (&vortex_field::VORTEX_FIELD, &vortex_field::AXIS),
     ];
     all.into_iter().find(|(of, _)| node_type.is_a(of)).map(|(_, key)| key)
+}
+
+/// Whether a field acts even if its direction is zero: air that moves with its field, and air at rest, which slows what
+/// moves in it unless it only accelerates.
+fn acts_without_direction(graph: &Graph, id: NodeId) -> bool {
+    let key = &air_field::COMPONENT_ONLY;
+    graph.node(id).node_type().is_a(&air_field::AIR_FIELD)
+        && (graph.is_ever_nonzero(id, &air_field::INHERIT_VELOCITY)
+            || graph.changes(id, key)
+            || !graph.at(0.0).get(id, key))
 }
 
 fn is_particle_input(graph: &Graph, to: Plug) -> bool {

@@ -243,7 +243,15 @@ fn nodes_that_act_on_nothing_are_warned_of() {
             r#""b": nRigid(inputMesh: "m2"), "m2": polyCube(), "f": gravityField(target: "b", direction: (0, 1, 0))"#,
             "`f` acts on colliders only, which no force moves",
         ),
+        (
+            r#""f": airField(target: "q", direction: (0, 0, 0), inheritVelocity: 0, componentOnly: true)"#,
+            "`f` acts on nothing: its `direction` is zero",
+        ),
     ];
+    for air in ["inheritVelocity: 1, componentOnly: true", "inheritVelocity: 0, componentOnly: false"] {
+        let nodes = format!(r#"{base}, "f": airField(target: "q", direction: (0, 0, 0), speed: 1, {air})"#);
+        assert!(warnings(&nodes, "").is_empty(), "{air}");
+    }
     for (node, expected) in cases {
         assert_eq!(warnings(&format!("{base}, {sheet}, {node}"), ""), [expected]);
     }
