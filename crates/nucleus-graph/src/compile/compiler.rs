@@ -12,7 +12,7 @@ use crate::diagnostic::Findings;
 use crate::files;
 use crate::graph::{EvalContext, NodeId};
 use crate::memory::{self, Cost, Size};
-use crate::mesh::read_obj;
+use crate::mesh::read_obj_points;
 use crate::paint::read_vectors;
 use crate::scene::document::Scene;
 
@@ -152,7 +152,7 @@ impl<'a> Compiler<'a> {
         let path = self.scene.source.path(file);
         self.check_file(&path, memory::NUMBER_BYTE)?;
         if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
-            let points = read_obj(path).map_err(|error| error.to_string())?.positions;
+            let points = read_obj_points(path).map_err(|error| error.to_string())?;
             return Ok(points.into_iter().map(Into::into).collect());
         }
         read_vectors(&path).map_err(|error| error.to_string())

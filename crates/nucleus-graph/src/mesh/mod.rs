@@ -24,7 +24,10 @@ mod primitive;
 pub use degenerate::drop_degenerate_faces;
 pub use file::{FileMesh, Frames, MeshFile, MeshFileError, MeshFormat};
 pub(crate) use measures::{area, bounding_box, doubled_area, is_closed, is_open, sides, volume};
-pub use obj::{CornerUvs, ObjError, ObjFault, read_obj, read_obj_corner_uvs, read_obj_groups, read_obj_uvs};
+pub use obj::{
+    CornerUvs, ObjError, ObjFault, read_obj, read_obj_corner_uvs, read_obj_groups, read_obj_points,
+    read_obj_uvs,
+};
 pub use primitive::{
     Primitive, PrimitiveError, poly_cube, poly_cylinder, poly_plane, poly_plane_uvs, poly_sphere,
     rotation_to_axis,

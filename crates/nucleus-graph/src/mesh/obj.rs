@@ -42,7 +42,33 @@ pub fn read_obj(path: impl AsRef<Path>) -> Result<Surface, ObjError> {
     surface.map_err(|fault| fault.in_file(path))
 }
 
+/// Reads the points of a file as [`read_obj`] does. A file that names an object without vertices has none, as an export of
+/// particles has before the first of them is born.
+///
+/// # Errors
+/// As [`read_obj`].
+pub fn read_obj_points(path: impl AsRef<Path>) -> Result<Vec<Vector3<f64>>, ObjError> {
+    let path = path.as_ref();
+    let points = files::open(path)
+        .map_err(Fault::from)
+        .and_then(|(file, _)| points(BufReader::with_capacity(1 << 18, file)));
+    points.map_err(|fault| fault.in_file(path))
+}
+
+fn points(input: impl BufRead) -> Result<Vec<Vector3<f64>>, Fault> {
+    let mesh = statements(input)?;
+    let names_object = mesh.names_object;
+    match mesh.finish() {
+        Err(Fault::NoVertices) if names_object => Ok(Vec::new()),
+        surface => Ok(surface?.positions),
+    }
+}
+
 fn read(input: impl BufRead) -> Result<Surface, Fault> {
+    statements(input)?.finish()
+}
+
+fn statements(input: impl BufRead) -> Result<Mesh, Fault> {
     let mut mesh = Mesh::default();
     let mut statements = Statements::new(input);
     while let Some((line, statement)) = statements.next()? {
@@ -50,11 +76,15 @@ fn read(input: impl BufRead) -> Result<Surface, Fault> {
         let result = match words.next().map(|word| word.bytes) {
             Some(b"v") => mesh.vertex(words),
             Some(b"f") => mesh.face(words, line),
+            Some(b"o") => {
+                mesh.names_object = true;
+                Ok(())
+            }
             _ => Ok(()),
         };
         result.map_err(|fault| Fault::Line(line, fault))?;
     }
-    mesh.finish()
+    Ok(mesh)
 }
 
 /// The mesh as read so far.
@@ -65,6 +95,8 @@ struct Mesh {
     corners: Vec<u32>,
     /// The highest point that a face refers to, and the line of that face. The vertex may follow later.
     highest: Option<(u32, u64)>,
+    /// Whether a statement names an object.
+    names_object: bool,
 }
 
 impl Mesh {

@@ -95,6 +95,17 @@ fn files_without_vertices_and_missing_files_are_refused() {
     }
 }
 
+#[test]
+fn an_object_without_vertices_has_no_points() {
+    let empty = "mtllib m.mtl\no drops\nusemtl drops\n";
+    assert!(points(empty.as_bytes()).unwrap().is_empty());
+    assert_eq!(points("o drops\nv 1 2 3\n".as_bytes()).unwrap(), [Vector3::new(1.0, 2.0, 3.0)]);
+    assert!(matches!(read(empty.as_bytes()), Err(Fault::NoVertices)), "no mesh");
+    for text in ["", "Scene()", "vn 0 0 1\n"] {
+        assert!(matches!(points(text.as_bytes()), Err(Fault::NoVertices)), "{text:?}");
+    }
+}
+
 /// A mesh as this test would write it.
 fn written(surface: &Surface) -> String {
     let mut text = String::new();
