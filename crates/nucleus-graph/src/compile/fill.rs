@@ -2,19 +2,23 @@
 //!
 //! Each particle stands for a cube of the grid's spacing, so a box is filled by as many cubes as fit into it, and the
 //! volume of a liquid is that of the box. A mesh is filled line by line: a line along x crosses a closed surface an even
-//! number of times, and every second stretch between crossings is inside.
+//! number of times, and every second stretch between crossings is inside. Where the mesh is that of a cloth or a collider, the
+//! particles begin outside of its contact distance: contact would push them out of it at the start, and them and the cloth
+//! away from each other.
 
 use nalgebra::Vector3;
 use nucleus_core::Surface;
 
-use crate::attributes::{Key, n_particle, surface_shape};
+use crate::attributes::{Key, n_base, n_cloth, n_particle, surface_shape};
 use crate::diagnostic::nearest;
 use crate::graph::NodeId;
 use crate::memory::{Cost, Size};
 use crate::mesh::bounding_box;
 
 use super::compiler::Compiler;
-use super::liquids::rest_distance;
+use super::constraints::near::are_near;
+use super::liquids::{contact_radius, rest_distance};
+use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness};
 
 /// Share of the spacing by which lines are moved aside, so that they meet no vertex or edge of a regular mesh.
 const ASIDE: [f64; 2] = [1.234_567e-5, 2.345_678e-5];
@@ -104,7 +108,17 @@ impl Compiler<'_> {
         surface.positions.iter_mut().for_each(|position| *position = placement.point(*position));
         let [low, high] = bounding_box(&surface.positions);
         self.claim_filling(node, (high - low).map(|x| x / spacing + 1.0).product(), &n_particle::FILL_MESH)?;
-        let filled = fill(&surface, spacing);
+        let mut filled = fill(&surface, spacing);
+        let reach = self.contact_distance(node, id, &surface);
+        if reach > 0.0 {
+            // A particle at that distance, within rounding, stays.
+            let corner = |&corner: &u32| surface.positions[corner as usize];
+            let faces: Vec<Vec<_>> =
+                surface.faces.iter().map(|face| face.iter().map(corner).collect()).collect();
+            let are_near = are_near(&filled, &faces, reach * (1.0 - ROUNDING));
+            let away = filled.into_iter().zip(are_near).filter(|(_, is_near)| !is_near);
+            filled = away.map(|(place, _)| place).collect();
+        }
         if filled.is_empty() {
             let error = self
                 .findings
@@ -113,6 +127,22 @@ impl Compiler<'_> {
             return None;
         }
         Some(filled)
+    }
+
+    /// The distance in scene units that contact keeps between particles and the cloths and colliders with a mesh, which is
+    /// `surface`; 0 where there are none.
+    fn contact_distance(&self, particles: NodeId, mesh: NodeId, surface: &Surface) -> f64 {
+        let (graph, start) = (&self.scene.graph, &self.start);
+        let collides = |node: NodeId| start.get(node, &n_base::COLLIDE);
+        let has_mesh = |node: &NodeId| graph.source(*node, &n_base::INPUT_MESH) == Some(mesh);
+        let objects = graph.of_type(&n_base::N_BASE).map(|(node, _)| node).filter(has_mesh);
+        let distance = |node: NodeId| {
+            let is_cloth = graph.node(node).node_type().is_a(&n_cloth::N_CLOTH);
+            let share = if is_cloth { CLOTH_SHARE } else { COLLIDER_SHARE };
+            let given = graph.is_given(node, &n_base::THICKNESS).then(|| start.get(node, &n_base::THICKNESS));
+            contact_radius(start, particles) + given.unwrap_or_else(|| default_thickness(surface, share))
+        };
+        objects.filter(|node| collides(*node) && collides(particles)).map(distance).fold(0.0, f64::max)
     }
 
     /// Claims the memory of particles before they are made.

@@ -17,7 +17,7 @@ const HONEY: f64 = 0.01;
 /// Surface tension over density in m³/s² at a `surfaceTension` of 1: its capillary length is 1 cm.
 const CENTIMETRE_DROPS: f64 = 1e-3;
 /// Distance of particles from a wall where `collideWidthScale` is not given, in rest distances.
-pub(super) const WALL_DISTANCE: f64 = 0.5;
+const WALL_DISTANCE: f64 = 0.5;
 /// Contact distance beyond which a liquid is warned of, as a multiple of the natural one.
 const MAX_DISTANCE: f64 = 1.25;
 
@@ -29,6 +29,16 @@ pub(super) fn rest_distance(at: &EvalContext<'_>, node: NodeId) -> f64 {
     let volume = 4.0 / 3.0 * std::f64::consts::PI / number(&n_particle::REST_DENSITY);
     // Newton's iteration for the cube root, the same bits on every machine; the volume is at most 4.2.
     radius * (0..32).fold(1.0, |root: f64, _| root - (root - volume / (root * root)) / 3.0)
+}
+
+/// The contact thickness of particles in scene units: the radius; that of a liquid, half the rest distance unless it is given.
+pub(super) fn contact_radius(at: &EvalContext<'_>, node: NodeId) -> f64 {
+    let (key, radius) = (&n_particle::COLLIDE_WIDTH_SCALE, at.get(node, &n_particle::RADIUS));
+    match at.graph().is_given(node, key) {
+        true => radius * at.get(node, key).max(0.0),
+        false if is_liquid(at, node) => WALL_DISTANCE * rest_distance(at, node),
+        false => radius,
+    }
 }
 
 /// Whether an object collides with itself at a frame. A liquid does where `selfCollide` is given.
@@ -84,11 +94,7 @@ impl Compiler<'_> {
             error.help("give it a `radius` above 0");
             return None;
         }
-        let radius = self.start.get(node, &n_particle::RADIUS);
-        let width = match graph.is_given(node, &n_particle::COLLIDE_WIDTH_SCALE) {
-            true => radius * self.start.get(node, &n_particle::COLLIDE_WIDTH_SCALE).max(0.0),
-            false => WALL_DISTANCE * rest,
-        };
+        let width = contact_radius(&self.start, node);
         let apart = 2.0 * width * self.start.get(node, &n_particle::SELF_COLLIDE_WIDTH_SCALE).max(0.0);
         if self_collides(&self.start, node) && apart > MAX_DISTANCE * rest {
             let message = format!(

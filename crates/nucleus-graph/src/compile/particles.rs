@@ -13,7 +13,7 @@ use crate::memory::{Cost, Size};
 use super::compiler::Compiler;
 use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
-use super::liquids::{WALL_DISTANCE, ever_self_collides, self_collides};
+use super::liquids::{contact_radius, ever_self_collides, self_collides};
 use super::particle_ramps::{EVENT_ROOM, is_event_target};
 use super::program::{EvaluationInterval, ObjectKind};
 use super::sources::{ClothSource, Emitter, MapScales, RecordedPoints};
@@ -160,17 +160,12 @@ impl Compiler<'_> {
 }
 
 impl EvaluationInterval<'_> {
-    /// The attributes of particles in a frame. Their thickness is the radius; that of a liquid, half the rest distance
-    /// unless it is given.
+    /// The attributes of particles in a frame.
     pub(super) fn particle_frame(&self, node: NodeId) -> ClothFrame {
         let number = |key: &Key<f64>| self.to.get(node, key);
         let radius = self.nucleus.units.length(number(&n_particle::RADIUS));
         let liquid = self.liquid(node);
-        let thickness = match (liquid, self.given(node, &n_particle::COLLIDE_WIDTH_SCALE)) {
-            (Some(liquid), None) => WALL_DISTANCE * liquid.spacing,
-            (None, None) => radius,
-            (_, Some(scale)) => radius * scale.max(0.0),
-        };
+        let thickness = self.nucleus.units.length(contact_radius(&self.to, node));
         ClothFrame {
             stretch_resistance: 0.0,
             compression_resistance: 0.0,

@@ -121,6 +121,24 @@ fn particles_fill_the_volume_of_a_mesh_where_it_stands() {
 }
 
 #[test]
+fn particles_that_fill_the_mesh_of_a_cloth_or_collider_begin_outside_of_its_contact_distance() {
+    let filled = |object: &str, particles: &str| {
+        let nodes = format!(
+            r#""n": nucleus(), "c": polyCube(), "o": {object}(inputMesh: "c", thickness: 0.1),
+               "q": nParticle(fillMesh: "c", radius: 0.05, {particles})"#
+        );
+        let program = program(&of_nodes(&nodes, ""));
+        let particles = program.nuclei()[0].model().cloths().len() - 1;
+        places(&program, particles).len()
+    };
+    // Cubes of 0.1: the outer layer has its centres 0.05 from the mesh, the next one 0.15.
+    assert_eq!(filled("nCloth", ""), 512);
+    assert_eq!(filled("nRigid", ""), 512);
+    assert_eq!(filled("nCloth", "collide: false"), 1000);
+    assert_eq!(filled("nRigid", "collideWidthScale: 2.1"), 216);
+}
+
+#[test]
 fn the_attenuations_of_a_drag_field_are_speeds_in_scene_units() {
     let nodes = r#""n": nucleus(spaceScale: 0.01), "q": nParticle(position: [(0, 0, 0)]),
         "f": dragField(target: "q", magnitude: 8, speedAttenuation: 200, motionAttenuation: 24,

@@ -25,7 +25,7 @@ mod frame;
 pub(super) mod kinds;
 pub(super) mod member;
 mod members;
-mod near;
+pub(super) mod near;
 mod sheet;
 pub(super) mod split_mesh;
 mod tearing;

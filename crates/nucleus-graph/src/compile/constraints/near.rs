@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::bvh::{Bounds, Bvh};
+
 type Point = Vector3<f64>;
 
 /// A place on an element: up to three of its corners, by their index in it, with weights.
@@ -16,6 +18,16 @@ impl Foot {
     fn corner(k: usize, place: Point) -> Self {
         Self { corners: [k; 3], weights: [1.0, 0.0, 0.0], place }
     }
+}
+
+/// Whether each of the places is within a distance of any polygon.
+pub(in crate::compile) fn are_near(places: &[Point], polygons: &[Vec<Point>], reach: f64) -> Vec<bool> {
+    let tree = Bvh::new(polygons.iter().map(|polygon| &polygon[..]));
+    let is_near = |place: &Point| {
+        let distance = |at: u32| (foot(&polygons[at as usize], *place).place - place).norm();
+        tree.nearest(&Bounds::of(&[*place]), reach, distance).is_some()
+    };
+    places.iter().map(is_near).collect()
 }
 
 /// The place of an element (a point, an edge or a polygon) that is closest to a point.
