@@ -109,8 +109,8 @@ impl PairFilter {
         self.tears |= tears;
         let welded = (0..).zip(before).filter(|(row, first)| row != first);
         let Self { clusters, released, .. } = self;
-        let parted = welded.filter(|(row, first)| !share_cluster(clusters, &[*row], &[*first]));
-        released.extend(parted.map(|(row, first)| [first, row]));
+        let pairs = welded.filter(|(row, first)| !share_cluster(clusters, &[*row], &[*first]));
+        released.extend(pairs.map(|(row, first)| [first, row]));
     }
 
     /// Keeps the released pairs that are near, of `rows` rows in all.

@@ -26,6 +26,7 @@ mod never_stuck;
 mod particle_ramps;
 mod particles;
 mod rest;
+mod rigid_bodies;
 mod rotation;
 mod scenes;
 mod self_collision;

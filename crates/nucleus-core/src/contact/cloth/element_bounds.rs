@@ -103,15 +103,16 @@ impl SharedBounds<'_> {
 
 impl ContactDistance {
     /// That of two elements that stay at least `least` metres apart and are `at_rest` metres apart at rest, if they can come
-    /// closer than `range` times the thickness. `parted` gives the contact distance in metres of elements that coincide at
+    /// closer than `range` times the thickness. `released` gives the contact distance in metres of elements that coincide at
     /// rest, and zero where they do not collide.
     #[inline(always)]
     pub fn new(
         [least, at_rest]: [f32; 2],
         [thickness, range]: [f32; 2],
-        parted: impl FnOnce() -> f32,
+        released: impl FnOnce() -> f32,
     ) -> Option<Self> {
-        let contact_distance = thickness.min(if at_rest > 0.0 { at_rest * REST_GAP_SHARE } else { parted() });
+        let contact_distance =
+            thickness.min(if at_rest > 0.0 { at_rest * REST_GAP_SHARE } else { released() });
         let certified = least > contact_distance * CERTIFIED_GAP as f32;
         (contact_distance > 0.0 && least < contact_distance * range).then_some(Self {
             thickness: contact_distance,

@@ -101,11 +101,11 @@ impl<'a, R: Real> ClothPair<'a, R> {
         found.overlapping.clear();
     }
 
-    /// The contact distance in metres of two elements that coincide at rest or were welded, and may have parted: their
+    /// The contact distance in metres of two elements that coincide at rest or were welded, and have been released: their
     /// distance at the start of the step, so that they can part and not pass. Zero where they touch: what intersects is
     /// untangled.
     #[cold]
-    fn parted_distance<const N: usize, const M: usize>(&self, (ours, theirs): ElementPoints<N, M>) -> f32 {
+    fn released_distance<const N: usize, const M: usize>(&self, (ours, theirs): ElementPoints<N, M>) -> f32 {
         let SearchInput { filter, anchors, displacement: [start, _], .. } = self.search.input;
         if !filter.tears() || filter.are_joined(&ours, &theirs) {
             return 0.0;
@@ -125,9 +125,9 @@ impl<'a, R: Real> ClothPair<'a, R> {
         [least, at_rest]: [f32; 2],
     ) -> Option<Candidate<R, N, M>> {
         let ClothSearch { input, untangling, elements, .. } = self.search;
-        let parted = || self.parted_distance(points);
+        let released = || self.released_distance(points);
         let at_rest = if input.filter.are_released(&points.0, &points.1) { 0.0 } else { at_rest };
-        let distance = ContactDistance::new([least, at_rest], self.thickness_and_range, parted)?;
+        let distance = ContactDistance::new([least, at_rest], self.thickness_and_range, released)?;
         let [ours, theirs] = [points.0[0], points.1[0]].map(|point| elements.cloth[point as usize]);
         if untangling.is_disabled(&points.0, &points.1, [ours, theirs])
             || input.filter.excludes(&points.0, &points.1)

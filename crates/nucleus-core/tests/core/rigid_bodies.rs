@@ -1,0 +1,75 @@
+//! Impacts of bodies that keep their shape.
+
+use crate::scenes::{Vec3, frame, ground, still};
+use crate::soft_bodies::{crate_of, icosphere};
+use nucleus_core::{
+    Cloth, ClothFrame, ClothId, ClothLists, FrameInput, Mass, ModelBuilder, ResistanceModel, Solver,
+    StateView, Surface,
+};
+
+const CLOTH: ClothId = ClothId(0);
+const PHYSICAL: ResistanceModel = ResistanceModel::Physical { evaluations: 96.0 };
+
+/// The height in metres that a body of this rigidity reaches after it has fallen by 0.8 m on the ground, and its largest energy
+/// over that at the start.
+fn rebound(body: &Surface, rigidity: f64, bounce: f64) -> [f64; 2] {
+    let mut body = body.clone();
+    let lowest = body.positions.iter().map(|place| place.y).fold(f64::MAX, f64::min);
+    body.positions.iter_mut().for_each(|place| place.y += 0.8 - lowest);
+    let count = body.positions.len();
+    let lists = ClothLists { stretch: true, damp: true, shape: true, ..ClothLists::NONE };
+    let mut builder = ModelBuilder::new();
+    builder.cloth(Cloth::new(body, Mass::PerPoint(0.01), lists)).expect("a good mesh");
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let cloth = ClothFrame { rigidity, bounce, thickness: 0.001, ..still() };
+    let input = FrameInput { cloths: vec![cloth], plane: Some(ground(0.0)), ..frame(1, PHYSICAL) };
+    let energy = |solver: &Solver<f64>| {
+        let mut velocities = Vec::new();
+        solver.velocities(CLOTH, 1.0, &mut velocities);
+        let kinetic =
+            velocities.iter().map(|v| Vec3::from(v.map(f64::from)).norm_squared() / 2.0).sum::<f64>();
+        kinetic + (0..count).map(|k| 9.81 * solver.point(CLOTH, k).y).sum::<f64>()
+    };
+    let (start, mut most, mut highest) = (energy(&solver), 0.0f64, 0.0f64);
+    for k in 0..30 {
+        solver.step(&input, &mut ());
+        most = most.max(energy(&solver) / start);
+        // It lands in the tenth frame.
+        if k >= 12 {
+            let lowest = (0..count).map(|k| solver.point(CLOTH, k).y).fold(f64::MAX, f64::min);
+            highest = highest.max(lowest);
+        }
+    }
+    [highest, most]
+}
+
+#[test]
+fn a_rigid_ball_rebounds_by_the_square_of_its_bounce() {
+    let ball = icosphere(0.1);
+    for rigidity in [1.0, 20.0, 1000.0] {
+        for bounce in [0.0, 0.5, 1.0] {
+            let [height, energy] = rebound(&ball, rigidity, bounce);
+            let expected = 0.8 * bounce * bounce;
+            assert!((height - expected).abs() < 0.05, "{rigidity}, {bounce}: {height} m, not {expected}");
+            assert!(energy < 1.01, "{rigidity}, {bounce}: energy {energy}");
+        }
+    }
+}
+
+#[test]
+fn a_rigid_crate_gains_no_energy_on_whatever_corner_it_lands() {
+    let tilts =
+        [Vec3::zeros(), Vec3::new(0.1, 0.0, 0.0), Vec3::new(0.6, 0.2, 0.4), Vec3::new(0.0, 0.0, 0.785)];
+    for tilt in tilts {
+        let mut body = crate_of(0.2, 4);
+        body.positions.iter_mut().for_each(|place| *place = nalgebra::Rotation3::new(tilt) * *place);
+        for bounce in [0.0, 0.5, 1.0] {
+            let [height, energy] = rebound(&body, 20.0, bounce);
+            assert!(energy < 1.01 && height < 0.85, "{tilt:?}, {bounce}: energy {energy}, {height} m");
+            assert!(bounce > 0.0 || height < 0.05, "{tilt:?}: it does not bounce, but rises by {height} m");
+        }
+    }
+    // Flat, all of its bottom lands at once.
+    let [height, _] = rebound(&crate_of(0.2, 4), 20.0, 1.0);
+    assert!((height - 0.8).abs() < 0.05, "{height} m");
+}
