@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::contact::response::{Impact, Restitution, Touch};
-use crate::math::{Real, Row4};
+use crate::math::{Real, Row4, dot, sub};
 use crate::schedule::{Schedule, WholeEffect, WholeSweep};
 use crate::state::State;
 
@@ -67,7 +67,13 @@ pub fn rebound<R: Real>(
     share: f64,
 ) {
     let is_pinned = |row: &u32| state.displacement[*row as usize].0[3] <= R::ZERO;
-    if rows.iter().any(is_pinned) {
+    let is_hit = |touch: &Touch<R>| {
+        let impact = Impact::of(state, touch.row as usize);
+        let after = dot(touch.normal, sub(impact.velocity, touch.surface));
+        impact.push_speed(touch.normal, restitution.h) - after > restitution.min_speed
+    };
+    // A body at rest costs no more than its touches.
+    if !touches.iter().any(is_hit) || rows.iter().any(is_pinned) {
         return;
     }
     let pushes = push_velocities(state, touches, restitution.h);
