@@ -49,6 +49,11 @@ impl Ends {
         (0..self.count).map(|k| value(self.rows[k]) * self.weights[k]).sum()
     }
 
+    /// The inverse masses of its points in 1/kg.
+    pub fn inverse_masses<R: Real>(&self, displacement: &[Row4<R>]) -> [f64; 6] {
+        self.rows.map(|row| displacement[row as usize].0[3].to_f64())
+    }
+
     /// Σ w_k s_k p_k: how far a unit push along the link changes its length, in 1/kg.
     pub fn mobility<R: Real>(&self, displacement: &[Row4<R>]) -> f64 {
         let of =
@@ -57,9 +62,9 @@ impl Ends {
     }
 
     /// Adds `change` per inverse mass to a column, along the link: each point by its inverse mass and its push.
-    pub fn apply<R: Real>(&self, masses: impl Fn(u32) -> f64, column: &mut [Row4<R>], change: Vector3<f64>) {
+    pub fn apply<R: Real>(&self, inverse_masses: &[f64], column: &mut [Row4<R>], change: Vector3<f64>) {
         for k in 0..self.count {
-            let factor = masses(self.rows[k]) * self.push[k];
+            let factor = inverse_masses[k] * self.push[k];
             let row = &mut column[self.rows[k] as usize];
             (0..3).for_each(|axis| row.0[axis] += R::from_f64(change[axis] * factor));
         }

@@ -33,9 +33,8 @@ pub fn apply_link_forces<R: Real>(
             let d = vector(link, &ends, state, prescribed, time);
             let Some(along) = d.try_normalize(0.0).filter(|_| mobility > 0.0) else { continue };
             let change = force.acceleration * force.falloff.at(d.norm()) * length / mobility;
-            let displacement = &state.displacement;
-            let mass = |row: u32| displacement[row as usize].0[3].to_f64();
-            ends.apply(mass, &mut state.velocity, along * -change);
+            let masses = ends.inverse_masses(&state.displacement);
+            ends.apply(&masses, &mut state.velocity, along * -change);
         }
     }
 }
@@ -63,9 +62,8 @@ pub fn damp_links<R: Real>(
             let relative = relative_velocity(link, &ends, state, prescribed, frame.duration);
             let d = vector(link, &ends, state, prescribed, time);
             let along = d * (relative.dot(&d) / d.norm_squared().max(1e-30));
-            let displacement = &state.displacement;
-            let mass = |row: u32| displacement[row as usize].0[3].to_f64();
-            ends.apply(mass, &mut state.velocity, along * -(rate / (1.0 + rate) / mobility));
+            let masses = ends.inverse_masses(&state.displacement);
+            ends.apply(&masses, &mut state.velocity, along * -(rate / (1.0 + rate) / mobility));
         }
     }
 }
@@ -93,11 +91,10 @@ pub fn drag_links<R: Real>(
             }
             let relative = relative_velocity(link, &ends, state, prescribed, frame.duration);
             let change = relative * -(taken / mobility);
-            let masses = ends.rows.map(|row| state.displacement[row as usize].0[3].to_f64());
-            let mass = |row: u32| ends.rows.iter().position(|own| *own == row).map_or(0.0, |k| masses[k]);
-            ends.apply(mass, &mut state.velocity, change);
+            let masses = ends.inverse_masses(&state.displacement);
+            ends.apply(&masses, &mut state.velocity, change);
             for column in [&mut state.displacement, &mut state.predicted] {
-                ends.apply(mass, column, change * h);
+                ends.apply(&masses, column, change * h);
             }
         }
     }
