@@ -20,7 +20,7 @@ pub fn update_pair_filter<R: Real>(
     links_changed: bool,
 ) {
     let rows = model.cloths.last().map_or(0, |last| last.blocks.end()) as usize;
-    if contact.pair_filter.tears() && !links_changed {
+    if contact.pair_filter.has_released() && !links_changed {
         keep_released(contact, state, rows);
     }
     if frame.exclusions.is_empty() && !contact.pair_filter.has_exclusions() && !links_changed {

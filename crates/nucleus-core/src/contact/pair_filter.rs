@@ -57,10 +57,15 @@ impl PairFilter {
 
     /// Whether elements that coincide at rest may have been torn from each other.
     pub fn tears(&self) -> bool {
-        self.tears || !self.released.is_empty()
+        self.tears
     }
 
-    /// Whether two elements have points that were welded to each other, and have not been apart since.
+    /// Whether there are points that were welded to each other, and have not been apart since.
+    pub fn has_released(&self) -> bool {
+        !self.released.is_empty()
+    }
+
+    /// Whether two elements have such points.
     #[inline]
     pub fn are_released(&self, ours: &[u32], theirs: &[u32]) -> bool {
         share_cluster(&self.released_clusters, ours, theirs) && !self.are_joined(ours, theirs)
@@ -203,4 +208,24 @@ fn both(a: Sides, b: Sides) -> Sides {
 /// Whether one is on the first side of an exclusion and the other on the second.
 fn meet(a: Sides, b: Sides) -> bool {
     (a[0] & b[1]) | (a[1] & b[0]) != 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_of_a_broken_weld_are_released_until_they_have_been_apart() {
+        let mut filter = PairFilter::default();
+        filter.set_welds(vec![0, 0, 0, 3, 3], false);
+        // Row 1 leaves its weld with 0 and 2, and 3 and 4 stay together.
+        filter.set_welds(vec![0, 1, 0, 3, 3], false);
+        filter.keep_released(5, |_| true);
+        assert!(filter.are_released(&[1], &[0]) && filter.are_released(&[1], &[2]));
+        assert!(!filter.are_released(&[0], &[2]) && !filter.are_released(&[3], &[4]), "still welded");
+        assert!(!filter.are_released(&[1], &[3]), "never welded");
+        assert!(!filter.tears(), "no weld of theirs can break");
+        filter.keep_released(5, |_| false);
+        assert!(!filter.has_released() && !filter.are_released(&[1], &[0]));
+    }
 }

@@ -107,7 +107,7 @@ impl<'a, R: Real> ClothPair<'a, R> {
     #[cold]
     fn released_distance<const N: usize, const M: usize>(&self, (ours, theirs): ElementPoints<N, M>) -> f32 {
         let SearchInput { filter, anchors, displacement: [start, _], .. } = self.search.input;
-        if !filter.tears() || filter.are_joined(&ours, &theirs) {
+        if !(filter.tears() || filter.are_released(&ours, &theirs)) || filter.are_joined(&ours, &theirs) {
             return 0.0;
         }
         let place = |point: u32| add(anchors[point as usize], start[point as usize].xyz().map(R::to_f64));
