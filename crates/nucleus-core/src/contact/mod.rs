@@ -78,6 +78,8 @@
 //! | `collider::contact::PLANE_VALIDITY` | 1/256 of the rest gap | error of a plane around an edge below 1e-5 of it |
 //! | `ccd::CERTIFIED_GAP` | 0.02 t | far above rounding error |
 //! | `collider::sweep::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
+//! | `rigid_impact::SUDDEN` | 1/24 s | a body that springs back within a film frame looks rigid |
+//! | `rigid_impact::ROUNDS` | 20 | impulses of a crate that lands on a face |
 //! | `response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |
 //! | `room::FACING` | 0.5 | cosine: at a larger angle a point finds room beside the two surfaces |
 //! | `response::TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |

@@ -181,7 +181,7 @@ pub struct Restitution<R> {
 
 /// A point that touches the ground or a collider at the end of a step.
 #[derive(Debug, Clone, Copy)]
-pub struct Touch<R> {
+pub struct TouchingPoint<R> {
     /// The point.
     pub row: u32,
     /// Unit normal of the surface.

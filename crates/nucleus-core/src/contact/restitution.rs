@@ -4,7 +4,7 @@
 //! each touching contact the normal speed becomes the coefficient times that before the collision (Müller et al.
 //! 2020, "Detailed rigid body simulation with extended position based dynamics", §3.6).
 
-use crate::contact::response::{Impact, Restitution, Touch};
+use crate::contact::response::{Impact, Restitution, TouchingPoint};
 use crate::contact::rigid_impact::{rebound, share_of_impact};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ColliderStepArgs;
@@ -44,12 +44,12 @@ pub fn apply_restitution<R: Real>(pass: &mut ContactPass<'_, R>) {
 fn find_touches_of_ground<R: Real>(
     pass: &ContactPass<'_, R>,
     cloth: usize,
-    also_without: bool,
-    touches: &mut Vec<Touch<R>>,
+    even_without_bounce: bool,
+    touches: &mut Vec<TouchingPoint<R>>,
 ) {
-    let Some(material) = pass.contact.ground_materials[cloth]
-        .filter(|material| (also_without || material.has_restitution()) && !pass.contact.is_free[cloth])
-    else {
+    let Some(material) = pass.contact.ground_materials[cloth].filter(|material| {
+        (even_without_bounce || material.has_restitution()) && !pass.contact.is_free[cloth]
+    }) else {
         return;
     };
     let Some(plane) = pass.contact.ground.in_step(pass.span) else { return };
@@ -62,7 +62,7 @@ fn find_touches_of_ground<R: Real>(
         if Restitution::touches(plane.height_now(row, displacement), thickness) {
             let coefficient = material.bounce_at(&pass.contact.material_maps, point);
             let surface = plane.velocity(row, displacement, h);
-            touches.push(Touch { row, normal: plane.normal(), surface, coefficient });
+            touches.push(TouchingPoint { row, normal: plane.normal(), surface, coefficient });
         }
     }
 }
@@ -71,8 +71,8 @@ fn find_touches_of_ground<R: Real>(
 fn find_touches_of_colliders<R: Real>(
     pass: &mut ContactPass<'_, R>,
     cloth: usize,
-    also_without: bool,
-    touches: &mut Vec<Touch<R>>,
+    even_without_bounce: bool,
+    touches: &mut Vec<TouchingPoint<R>>,
 ) {
     let ContactPass { state, frame, span, contact, .. } = pass;
     let ContactSystem { collider_states, collider_contacts, material_maps, .. } = &**contact;
@@ -81,7 +81,7 @@ fn find_touches_of_colliders<R: Real>(
         let list = &collider_contacts[index];
         let (at, interval) = (list.collider, list.interval);
         let material = contact.collider_materials_of(cloth)[at]
-            .filter(|material| also_without || material.has_restitution());
+            .filter(|material| even_without_bounce || material.has_restitution());
         let Some(material) = material else { continue };
         let view = ColliderStepArgs { material, material_maps, at, h, time: [span.to; 2], interval };
         let step = view.of(state, &collider_states[at]);
@@ -89,14 +89,14 @@ fn find_touches_of_colliders<R: Real>(
             let contact = list.point_face[active as usize];
             if let Some((normal, surface)) = contact.touching_surface(&step, frame.duration) {
                 let coefficient = contact.bounce(&step);
-                touches.push(Touch { row: contact.points[0], normal, surface, coefficient });
+                touches.push(TouchingPoint { row: contact.points[0], normal, surface, coefficient });
             }
         }
     }
 }
 
 /// Sets the velocity of a point after its collision, unless it is pinned.
-fn bounce<R: Real>(state: &mut State<R>, touch: &Touch<R>, restitution: Restitution<R>) {
+fn bounce<R: Real>(state: &mut State<R>, touch: &TouchingPoint<R>, restitution: Restitution<R>) {
     let row = touch.row as usize;
     if touch.coefficient <= R::ZERO || state.displacement[row].0[3] <= R::ZERO {
         return;

@@ -3,8 +3,7 @@
 //! A rigid body that lands on one point rebounds by an impulse on all of it. If the velocity of that point alone were
 //! reversed, its shape would undo it in the next step; and what the contact has pressed into the shape would throw the body
 //! back whatever its `bounce`. The velocities of the body's best rigid motion therefore get the impulses of its contacts, by
-//! sequential impulses on mass and moment of inertia (Guendelman, Bridson and Fedkiw 2003, *Nonconvex rigid bodies with
-//! stacking*, §5).
+//! sequential impulses on mass and moment of inertia (Catto 2005, *Iterative dynamics with temporal coherence*).
 //!
 //! How much of an impulse the whole takes follows from its shape's period: a body that would spring back within a film
 //! frame takes all of it.
@@ -13,7 +12,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::contact::response::{Impact, Restitution, Touch};
+use crate::contact::response::{Impact, Restitution, TouchingPoint};
 use crate::math::{Real, Row4, dot, sub};
 use crate::schedule::{Schedule, WholeEffect, WholeSweep};
 use crate::state::State;
@@ -62,12 +61,12 @@ struct RigidContact {
 pub fn rebound<R: Real>(
     state: &mut State<R>,
     rows: &[u32],
-    touches: &[Touch<R>],
+    touches: &[TouchingPoint<R>],
     restitution: Restitution<R>,
     share: f64,
 ) {
     let is_pinned = |row: &u32| state.displacement[*row as usize].0[3] <= R::ZERO;
-    let is_hit = |touch: &Touch<R>| {
+    let is_hit = |touch: &TouchingPoint<R>| {
         let impact = Impact::of(state, touch.row as usize);
         let after = dot(touch.normal, sub(impact.velocity, touch.surface));
         impact.push_speed(touch.normal, restitution.h) - after > restitution.min_speed
@@ -152,9 +151,13 @@ impl RigidMotion {
 }
 
 /// The velocity in m/s that contact gave to each point that touches, along the normal of its first touch.
-fn push_velocities<R: Real>(state: &State<R>, touches: &[Touch<R>], h: R) -> Vec<(u32, Vector3<f64>)> {
+fn push_velocities<R: Real>(
+    state: &State<R>,
+    touches: &[TouchingPoint<R>],
+    h: R,
+) -> Vec<(u32, Vector3<f64>)> {
     let first_touches = touches.chunk_by(|a, b| a.row == b.row).map(|touches| touches[0]);
-    let push = |touch: Touch<R>| {
+    let push = |touch: TouchingPoint<R>| {
         let speed = Impact::of(state, touch.row as usize).push_speed(touch.normal, h).to_f64();
         (touch.row, Vector3::from(touch.normal.map(R::to_f64)) * speed)
     };

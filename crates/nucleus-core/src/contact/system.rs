@@ -16,7 +16,7 @@ use crate::contact::depenetration::Obstacle;
 use crate::contact::ground::Ground;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
-use crate::contact::response::Touch;
+use crate::contact::response::TouchingPoint;
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, Row4};
@@ -62,7 +62,7 @@ pub struct ContactSystem<R: Real> {
     /// Elements that do not collide with each other.
     pub pair_filter: PairFilter,
     /// What touches at the end of a time step where it bounces: a buffer.
-    pub bouncing: Vec<Touch<R>>,
+    pub bouncing: Vec<TouchingPoint<R>>,
     /// Whether each cloth had a contact in the last frame.
     pub touches: Vec<bool>,
     /// Whether each cloth has had a contact in this frame.
