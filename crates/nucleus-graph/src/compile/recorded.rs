@@ -4,8 +4,8 @@
 //! from frame to frame: other objects collide with them and are moved by them, and nothing pushes them. Where it goes off,
 //! the object is solved on from there with its velocities.
 //!
-//! Particles are born at the frame in which a file has more of them; an empty file, or an OBJ object without vertices, has none. A file that has fewer is an
-//! error: positions alone do not tell which of them died.
+//! Particles are born at the frame in which a file has more of them; an empty file, or an OBJ object without vertices, has
+//! none. A file that has fewer is an error: positions alone do not tell which of them died.
 
 use nalgebra::Vector3;
 use nucleus_core::{Birth, ClothId, MAX_COORDINATE, Pin, PointId};
