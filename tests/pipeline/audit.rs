@@ -6,8 +6,8 @@ use nucleus_graph::checks::Check;
 use nucleus_tests::gallery::{program, program_of, scene, scenes};
 use nucleus_tests::{Audited, audited};
 
-/// Frames of each scene that this test runs.
-const FRAMES: usize = 12;
+/// Frames of each scene that this test runs; `nucleus run` audits such a scene to its end.
+const FRAMES: usize = 6;
 
 // EVIDENCE: N2.3-2, N2.3-3, N2.3-4  in every scene with such a check, nothing passes through anything
 #[test]

@@ -63,10 +63,13 @@
 //! Imports point downwards: `math`, `bytes`, `parallel` and `input` know nothing of the solver; `step`, `checkpoint`
 //! and `report` are on top.
 
+// Unit tests compile only what they call, so that they take no second compilation of the whole solver.
+#![cfg_attr(test, allow(dead_code))]
 #![deny(unsafe_code)] // allowed where tasks share columns and in SIMD lanes, each time with its reason
 
 mod bytes;
 mod checkpoint;
+#[cfg(not(test))]
 mod compiled;
 mod constraints;
 mod contact;

@@ -47,7 +47,7 @@ fn model() -> ModelBuilder {
         let cloth = Cloth { particles, ..Cloth::new(surface, Mass::PerPoint(0.01), lists) };
         builder.cloth(cloth).expect("good particles");
     }
-    builder.collider(Collider { surface: Surface::sphere(Vec3::zeros(), 0.25, 2) }).expect("a good mesh");
+    builder.collider(Collider { surface: Surface::sphere(Vec3::zeros(), 0.25, 1) }).expect("a good mesh");
     builder
 }
 
