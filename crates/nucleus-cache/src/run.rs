@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use nucleus_core::{ClothId, ColliderId, Faces};
+use nucleus_core::{ClothId, ColliderId, Faces, SubstepIndex};
 
 use crate::camera::Camera;
 use crate::selections::SelectedPoints;
@@ -188,17 +188,40 @@ impl RunInfo {
             .all(|detail| detail.includes(frame, self.start, self.end))
     }
 
-    /// Seconds from the start frame to the end of `substep` of `substeps` in `frame`.
-    pub(crate) fn time(&self, frame: i32, substep: u32, substeps: u32) -> f64 {
-        let frames = f64::from(frame) - f64::from(self.start) - 1.0;
-        (frames + f64::from(substep) / f64::from(substeps.max(1))) / self.frames_per_second
+    /// Seconds from the start frame to the end of a substep of the interval between two solved frames.
+    pub(crate) fn time(&self, [from, to]: [i32; 2], SubstepIndex { substep, substeps }: SubstepIndex) -> f64 {
+        let [before, length] = [[self.start, from], [from, to]].map(|[a, b]| f64::from(b) - f64::from(a));
+        let share = f64::from(substep) / f64::from(substeps.max(1));
+        (before + length * share) / self.frames_per_second
     }
 
-    /// The frame that a message of this time belongs to.
+    /// Frames from the solved frame before `frame` to it.
+    pub fn interval_before(&self, frame: i32) -> u32 {
+        let interval = self.interval.max(1);
+        match (i64::from(frame) - i64::from(self.start)).rem_euclid(i64::from(interval)) as u32 {
+            0 => interval,
+            rest => rest, // the last frame
+        }
+    }
+
+    /// Seconds from the start frame to the end of `frame`.
+    pub(crate) fn end_time(&self, frame: i32) -> f64 {
+        (f64::from(frame) - f64::from(self.start)) / self.frames_per_second
+    }
+
+    /// The frame that a message of this time belongs to: of a substep, the next one that is solved.
     pub(crate) fn frame_at(&self, log_time: u64) -> i32 {
         // Times are rounded to nanoseconds; a substep is far longer than this tolerance.
-        let frames = (log_time as f64 * 1e-9 * self.frames_per_second - 1e-6).ceil();
-        self.start.saturating_add(frames as i32)
+        let frames = (log_time as f64 * 1e-9 * self.frames_per_second - 1e-6).ceil() as i32;
+        if self.detail != Detail::Substeps || self.interval <= 1 {
+            return self.start.saturating_add(frames);
+        }
+        let interval = i64::from(self.interval);
+        let solved =
+            i64::from(self.start) + (i64::from(frames) + interval - 1).div_euclid(interval) * interval;
+        // The last frame is solved whether its turn has come or not.
+        let last = self.start.saturating_add(frames).max(self.end);
+        i32::try_from(solved).unwrap_or(last).min(last)
     }
 }
 
@@ -266,8 +289,25 @@ mod tests {
         ) {
             let run = RunInfo { start, end: start, frames_per_second: fps, ..RunInfo::default() };
             let substep = 1 + (share * f64::from(substeps - 1)) as u32;
-            let time = run.time(start + after, substep, substeps);
+            let interval = [start + after - 1, start + after];
+            let time = run.time(interval, SubstepIndex { substep, substeps });
             prop_assert_eq!(run.frame_at((time * 1e9).round() as u64), start + after);
+        }
+
+        #[test]
+        fn a_time_within_an_interval_names_the_frame_that_ends_it(
+            start in -1000_i32..1000, length in 1_i32..1000, interval in 1_u32..9, substeps in 1_u32..50,
+        ) {
+            let end = start + length;
+            let run = RunInfo { start, end, interval, detail: Detail::Substeps, ..RunInfo::default() };
+            let mut from = start;
+            for to in (start + 1..=end).filter(|&frame| run.expects(frame)) {
+                for substep in 1..=substeps {
+                    let time = run.time([from, to], SubstepIndex { substep, substeps });
+                    prop_assert_eq!(run.frame_at((time * 1e9).round() as u64), to);
+                }
+                from = to;
+            }
         }
     }
 }

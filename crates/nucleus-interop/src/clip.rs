@@ -352,7 +352,9 @@ fn samples<R: Read + Seek>(cache: &Playback<R>, selection: &Selection) -> Result
                 true => (1, 1),
                 false => (moment.substep, moment.substeps),
             };
-            let frame_time = f64::from(moment.frame) - 1.0 + f64::from(substep) / f64::from(substeps);
+            let interval = f64::from(cache.run().interval_before(moment.frame));
+            let share = f64::from(substep) / f64::from(substeps);
+            let frame_time = f64::from(moment.frame) - interval + interval * share;
             Sample { frame: moment.frame, substep, substeps, frame_time, moment: index }
         })
         .collect();

@@ -125,7 +125,7 @@ pub struct Exported {
 
 /// Writes a part of a cache as files of another tool. `progress` receives the finished fraction, 0 to 1.
 ///
-/// A file has its name only when it is complete.
+/// A file has its name only when it is complete. An export that fails leaves no new files.
 ///
 /// ```no_run
 /// use nucleus_interop::{Format, Request, Selection, export};
@@ -152,6 +152,21 @@ pub fn export<R: Read + Seek>(
         ncache::require_times(&clip)?;
     }
     let mut output = Output::new(request.force);
+    if let Err(error) = write(&mut clip, request, &mut output, progress) {
+        output.remove_new();
+        return Err(error);
+    }
+    let (samples, objects) = (clip.samples().len(), clip.objects().len());
+    Ok(Exported { files: output.written(), samples, objects })
+}
+
+/// Writes all files of a format.
+fn write<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    request: &Request,
+    output: &mut Output,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
     let out = &request.out;
     match (request.format.is_one_file(), out.parent()) {
         (false, _) => output.folder(out)?,
@@ -159,18 +174,16 @@ pub fn export<R: Read + Seek>(
         (true, _) => {}
     }
     match request.format {
-        Format::Obj => write_obj(&mut clip, out, &mut output, progress)?,
-        Format::Ply => write_ply(&mut clip, out, &mut output, progress)?,
-        Format::Pc2 => write_pc2(&mut clip, out, &mut output, progress)?,
-        Format::Mdd => write_mdd(&mut clip, out, &mut output, progress)?,
-        Format::Usda => usd::write_text(&mut clip, out, &mut output, progress)?,
-        Format::Usdc => usd::write_binary(&mut clip, out, &mut output, progress)?,
-        Format::Glb => glb::write(&mut clip, out, &mut output, progress)?,
-        Format::Vtu => vtu::write(&mut clip, out, &mut output, progress)?,
-        Format::Mc => ncache::write(&mut clip, out, ncache::Width::Bits32, &mut output, progress)?,
-        Format::Mcx => ncache::write(&mut clip, out, ncache::Width::Bits64, &mut output, progress)?,
-        Format::Foxglove => foxglove::write(&mut clip, out, &mut output, progress)?,
+        Format::Obj => write_obj(clip, out, output, progress),
+        Format::Ply => write_ply(clip, out, output, progress),
+        Format::Pc2 => write_pc2(clip, out, output, progress),
+        Format::Mdd => write_mdd(clip, out, output, progress),
+        Format::Usda => usd::write_text(clip, out, output, progress),
+        Format::Usdc => usd::write_binary(clip, out, output, progress),
+        Format::Glb => glb::write(clip, out, output, progress),
+        Format::Vtu => vtu::write(clip, out, output, progress),
+        Format::Mc => ncache::write(clip, out, ncache::Width::Bits32, output, progress),
+        Format::Mcx => ncache::write(clip, out, ncache::Width::Bits64, output, progress),
+        Format::Foxglove => foxglove::write(clip, out, output, progress),
     }
-    let (samples, objects) = (clip.samples().len(), clip.objects().len());
-    Ok(Exported { files: output.written(), samples, objects })
 }

@@ -13,6 +13,8 @@ use crate::error::ExportError;
 pub(crate) struct Output {
     replaces: bool,
     written: Vec<PathBuf>,
+    /// Those of the files that are in the place of no older one.
+    new: Vec<PathBuf>,
 }
 
 /// An unfinished file. Dropped before [`Output::finish`], it leaves nothing behind.
@@ -26,7 +28,7 @@ pub(crate) struct OutFile {
 impl Output {
     /// An export that may replace files if `replaces` is set.
     pub fn new(replaces: bool) -> Self {
-        Self { replaces, written: Vec::new() }
+        Self { replaces, written: Vec::new(), new: Vec::new() }
     }
 
     /// Begins a file.
@@ -55,16 +57,24 @@ impl Output {
     /// When any write to it has failed.
     pub fn finish(&mut self, file: OutFile) -> Result<(), ExportError> {
         let path = file.file.get_ref().destination().to_owned();
-        match file.close() {
-            Ok(()) => self.written.push(path),
-            Err(source) => return Err(ExportError::Write { path, source }),
-        }
+        let is_new = !path.exists();
+        file.close().map_err(|source| ExportError::Write { path: path.clone(), source })?;
+        self.new.extend(is_new.then(|| path.clone()));
+        self.written.push(path);
         Ok(())
     }
 
     /// All files, in the order in which they were finished.
     pub fn written(self) -> Vec<PathBuf> {
         self.written
+    }
+
+    /// Removes the new files of an export that has failed, so that they are not in the way of the next one.
+    pub fn remove_new(self) {
+        for path in self.new {
+            // What cannot be removed stays, beside the error that is reported.
+            let _ = fs::remove_file(path);
+        }
     }
 }
 

@@ -369,6 +369,23 @@ fn a_file_is_replaced_only_on_request_and_no_partial_file_remains() {
 }
 
 #[test]
+fn an_export_that_fails_leaves_no_new_files() {
+    let (folder, out) = all(Format::Obj);
+    let files = || {
+        let entries = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path());
+        entries.collect::<std::collections::BTreeSet<_>>()
+    };
+    let mut written = files();
+    let last = written.pop_last().unwrap();
+    written.iter().for_each(|path| fs::remove_file(path).unwrap());
+    let mut cache = Playback::open(folder.path().join("sample.mcap")).unwrap();
+    let request =
+        Request { format: Format::Obj, out: out.clone(), selection: Selection::default(), force: false };
+    assert!(matches!(export(&mut cache, &request, &mut |_| {}), Err(ExportError::Exists { .. })));
+    assert_eq!(files().into_iter().collect::<Vec<_>>(), [last]);
+}
+
+#[test]
 fn texture_coordinates_reach_the_formats_that_have_them() {
     let (_folder, out) = all(Format::Obj);
     let text = fs::read_to_string(out.join("wall.0003.obj")).unwrap();

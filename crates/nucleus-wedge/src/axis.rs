@@ -110,6 +110,14 @@ pub enum AxisError {
         /// Node and attribute.
         axis: String,
     },
+    /// A vector is varied as a whole, and so is a component of it.
+    #[error("`{axis}` and `{other}` set the same number: vary one of them")]
+    Overlaps {
+        /// Node and attribute.
+        axis: String,
+        /// Those of the axis before.
+        other: String,
+    },
 }
 
 impl FromStr for Axis {
@@ -199,6 +207,21 @@ impl Axis {
     /// `node.attribute`, the heading of its column.
     pub fn name(&self) -> String {
         format!("{}.{}", self.node, self.attribute)
+    }
+
+    /// Checks that it sets no number of the attribute `row` that `other` sets too.
+    ///
+    /// # Errors
+    /// When both are the same, or one is a component of the other.
+    pub(crate) fn differs_from(&self, other: &Self, row: &Attribute) -> Result<(), AxisError> {
+        let [own, theirs] = [self, other].map(|axis| axis.attribute.as_str());
+        let is_same_node = self.node == other.node;
+        let [axis, other] = [self, other].map(Self::name);
+        match is_same_node {
+            true if own == theirs => Err(AxisError::Twice { axis }),
+            true if [own, theirs].contains(&row.name) => Err(AxisError::Overlaps { axis, other }),
+            _ => Ok(()),
+        }
     }
 
     /// All values of a list or a stepped range; `None` for an interval that is sampled.

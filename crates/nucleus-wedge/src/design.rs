@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use nucleus_graph::attributes::Attribute;
 use nucleus_graph::graph::Graph;
 
 use crate::axis::{Axis, AxisError, Values};
@@ -86,12 +87,12 @@ impl Design {
     /// # Errors
     /// When an axis does not fit the scene or occurs twice, or the numbers of samples and rows make no table.
     pub fn resolve(&mut self, graph: &Graph) -> Result<(), DesignError> {
-        let mut seen = BTreeSet::new();
+        let mut seen: Vec<(&Axis, &'static Attribute)> = Vec::new();
         for axis in &mut self.axes {
-            axis.resolve(graph)?;
-            if !seen.insert(axis.name()) {
-                return Err(AxisError::Twice { axis: axis.name() }.into());
-            }
+            let row = axis.resolve(graph)?;
+            let same_row = seen.iter().filter(|(_, other)| other.name == row.name);
+            same_row.clone().try_for_each(|(other, _)| axis.differs_from(other, row))?;
+            seen.push((axis, row));
         }
         let sampled = self.axes.iter().find(|axis| matches!(axis.values, Values::Sampled(_)));
         match sampled {
@@ -286,6 +287,14 @@ mod tests {
         assert!(refused(&["c.damp=0..1"], 0, None).contains("--samples 20"));
         assert!(refused(&["c.damp=0,1"], 5, None).contains("needs an interval"));
         assert!(refused(&["c.damp=0,1", "c.adng=2"], 0, None).contains("varied twice"));
+        for [vector, component] in
+            [["n.windDirection=(1, 0, 0)", "n.windDirectionY=0,1"], ["p.translate=(0, 1, 0)", "p.tx=1"]]
+        {
+            for axes in [[vector, component], [component, vector]] {
+                assert!(refused(&axes, 0, None).contains("set the same number"), "{axes:?}");
+            }
+        }
+        assert_eq!(design(&["p.tx=0,1", "p.ty=0,1"], 0, None).unwrap().rows().len(), 4);
         assert!(refused(&["c.damp=0..1/2000", "n.windSpeed=0..1/2000"], 0, None).contains("4000000 runs"));
     }
 

@@ -59,15 +59,19 @@ impl<W: Write + Seek> Recorder<W> {
             return Err(RecordError::FrameOrder { frame, last: self.last_frame });
         }
         self.before = Some((self.last_frame, self.time_samples));
+        // A frame of which an earlier one is missing is no longer than the others.
+        let least = i64::from(frame) - i64::from(self.run.interval);
+        self.interval_start =
+            i32::try_from(least).map_or(self.last_frame, |least| least.max(self.last_frame));
         self.last_frame = frame;
         self.contact_counts = None;
         Ok(FrameRecorder { recorder: self })
     }
 
     /// The stamp of a substep of the current frame.
-    pub(crate) fn stamp(&self, SubstepIndex { substep, substeps }: SubstepIndex) -> Stamp {
-        let frame = self.last_frame;
-        Stamp { frame, substep, substeps, time: self.run.time(frame, substep, substeps) }
+    pub(crate) fn stamp(&self, index: SubstepIndex) -> Stamp {
+        let (frame, SubstepIndex { substep, substeps }) = (self.last_frame, index);
+        Stamp { frame, substep, substeps, time: self.run.time([self.interval_start, frame], index) }
     }
 
     /// Notes which colliders move in a substep that is not recorded.

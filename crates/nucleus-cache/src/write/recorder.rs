@@ -46,6 +46,8 @@ pub struct Recorder<W: Write + Seek = File> {
     /// Frame of the last checkpoint.
     pub(crate) checkpointed: Option<i32>,
     pub(crate) last_frame: i32,
+    /// The frame at which the interval of the last frame begins.
+    pub(crate) interval_start: i32,
     pub(crate) time_samples: u64,
     /// Frame before the one in flight, and the number of time samples at its end.
     pub(crate) before: Option<(i32, u64)>,
@@ -154,6 +156,7 @@ impl<W: Write + Seek> Recorder<W> {
             checkpoint_channel: None,
             checkpointed: None,
             last_frame: run.start,
+            interval_start: run.start,
             time_samples: 0,
             before: None,
             paths: None,
@@ -190,7 +193,7 @@ impl<W: Write + Seek> Recorder<W> {
         let frame = self.last_frame;
         let report = report_line(frame, self.contact_counts, report)
             .map_err(|source| RecordError::Report { frame, source })?;
-        let stamp = Stamp { frame, substep: 1, substeps: 1, time: self.run.time(frame, 1, 1) };
+        let stamp = Stamp { frame, substep: 1, substeps: 1, time: self.run.end_time(frame) };
         self.message.clear();
         self.message.extend_from_slice(report.to_string().as_bytes());
         self.writer.send(&stamp, self.report_channel, &self.message)?;
@@ -236,7 +239,7 @@ impl<W: Write + Seek> Recorder<W> {
         checkpoint::write(frame, is_last, has_moved, bytes, &mut self.message);
         let stamp = match frame == self.run.start {
             true => Stamp::start(frame),
-            false => Stamp { frame, substep: 1, substeps: 1, time: self.run.time(frame, 1, 1) },
+            false => Stamp { frame, substep: 1, substeps: 1, time: self.run.end_time(frame) },
         };
         self.writer.send(&stamp, channel, &self.message)?;
         self.checkpointed = Some(frame);

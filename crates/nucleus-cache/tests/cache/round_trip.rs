@@ -192,3 +192,23 @@ fn frames_that_a_run_does_not_solve_are_not_missing() {
         assert!(cache.verify().unwrap().is_intact(), "{detail:?}: {}", cache.corruption());
     }
 }
+
+#[test]
+fn substeps_of_a_run_that_solves_every_second_frame_share_both_frames() {
+    let run = RunInfo { interval: 2, end: START + 5, ..falling::with_substeps() };
+    let file = Shared::default();
+    let mut recorder = Recorder::to_writer(file.clone(), &run, falling::objects()).unwrap();
+    falling::record_frames(&mut recorder, [START + 2, START + 4, START + 5]).unwrap();
+    recorder.finish().unwrap();
+    let cache = Playback::read(Cursor::new(file.contents())).unwrap();
+    let found: Vec<_> =
+        cache.time_samples().iter().map(|sample| (sample.frame - START, sample.time * 24.0)).collect();
+    let thirds = [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 13.0, 14.0, 15.0];
+    for ((frame, time), (expected, third)) in
+        found.iter().zip([0, 2, 2, 2, 4, 4, 4, 5, 5, 5].into_iter().zip(thirds))
+    {
+        assert_eq!(*frame, expected);
+        assert!((time - third / 3.0).abs() < 1e-6, "{time} {third}");
+    }
+    assert_eq!(found.len(), thirds.len());
+}

@@ -104,14 +104,24 @@ pub(super) fn write_orientations<R: Read + Seek>(
     object: usize,
     stage: &mut impl Stage,
 ) -> Result<(), ExportError> {
+    // Samples before the first particle is born.
+    let mut empty = 0;
     let mut begins = true;
     for index in 0..clip.samples().len() {
-        // Particles that are yet to be born have none.
-        let Some(orientations) = clip.orientations(object, index)? else { continue };
-        if std::mem::take(&mut begins) {
-            stage.begin_samples(&Attribute::of("quatf[]", "primvars:orient").interpolated("vertex"));
+        let time = clip.samples()[index].frame_time;
+        match clip.orientations(object, index)? {
+            None if begins => empty += 1,
+            found => {
+                if std::mem::take(&mut begins) {
+                    stage.begin_samples(&Attribute::of("quatf[]", "primvars:orient").interpolated("vertex"));
+                    let before = &clip.samples()[..empty];
+                    before
+                        .iter()
+                        .for_each(|sample| stage.sample(sample.frame_time, &Value::Quaternions(&[])));
+                }
+                stage.sample(time, &Value::Quaternions(&found.unwrap_or_default()));
+            }
         }
-        stage.sample(clip.samples()[index].frame_time, &Value::Quaternions(&orientations));
     }
     if !begins {
         stage.end_samples();
