@@ -253,6 +253,33 @@ fn instances_are_omissions() {
     );
 }
 
+/// A cloth whose rest shape is a second mesh, connected from an output of its shape.
+fn with_rest_shape(output: &str, values: &str) -> Read {
+    let wire = format!("connectAttr \"restShape.{output}\" \"cShape.rsmh\";\n{values}");
+    read(&format!("{}{}{wire}", constrained_cloth(&[]), mesh("rest")))
+}
+
+#[test]
+fn a_rest_shape_is_read_from_every_output_of_a_mesh() {
+    let outputs = ["w", "w[0]", "worldMesh", "worldMesh[0]", "o", "outMesh", "wm[0]"];
+    for output in outputs {
+        let read = with_rest_shape(output, "");
+        assert!(read.text().contains("restShapeMesh: \"rest\""), "{output}:\n{}", read.text());
+        assert!(read.imported.omissions.is_empty(), "{output}: {}", read.imported.omissions);
+        assert_round_trip(&read);
+    }
+}
+
+#[test]
+fn a_connection_that_cannot_be_made_is_an_omission() {
+    let read = with_rest_shape("dispMap", "");
+    assert!(read.omits("restShape.dispMap to c.restShapeMesh", "is not read"), "{}", read.imported.omissions);
+    let second = with_rest_shape("w[1]", "");
+    assert!(second.omits("c", "instance `restShape.worldMesh[1]`"), "{}", second.imported.omissions);
+    let scaled = with_rest_shape("o", "setAttr \"rest.sx\" 2;\n");
+    assert!(scaled.omits("c", "the scale of `restShape`"), "{}", scaled.imported.omissions);
+}
+
 #[test]
 fn a_cache_that_is_switched_off_is_not_played_and_its_cycles_are_omissions() {
     let cache = |values: &str| {
