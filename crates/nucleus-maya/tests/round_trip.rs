@@ -224,13 +224,13 @@ fn a_written_scene_is_wired_as_mayas_commands_do() {
     for line in [
         "connectAttr \":time1.o\" \"n.cti\";",
         "connectAttr \":time1.o\" \"cShape.cti\";",
-        "connectAttr \"pShape.wm[0]\" \"cShape.imsh\";",
+        "connectAttr \"pShape.w[0]\" \"cShape.imsh\";",
         "connectAttr \"cShape.cust\" \"n.niao[0]\";",
         "connectAttr \"cShape.stst\" \"n.nias[0]\";",
         "connectAttr \"n.noao[0]\" \"cShape.nxst\";",
         "connectAttr \"n.stf\" \"cShape.stf\";",
         "connectAttr \"cShape.omsh\" \"outputCloth1Shape.i\";",
-        "connectAttr \"sShape.wm[0]\" \"rShape.imsh\";",
+        "connectAttr \"sShape.w[0]\" \"rShape.imsh\";",
         "connectAttr \"rShape.cust\" \"n.nipo[0]\";",
         "connectAttr \"rShape.stst\" \"n.nips[0]\";",
         "connectAttr \"n.stf\" \"rShape.stf\";",
@@ -250,6 +250,19 @@ fn a_written_scene_is_wired_as_mayas_commands_do() {
         assert!(text.contains(&line), "{line} is missing in\n{text}");
     }
     assert!(imported(&text).scene == scene, "{}", write_scene(&imported(&text).scene));
+}
+
+/// `wm` is the world matrix in Maya; earlier exports connected it as the mesh.
+#[test]
+fn an_earlier_export_that_connects_the_world_matrix_is_read_as_before() {
+    let ron = "Scene(time: (start: 1, end: 10, fps: 24), nodes: {\"n\": nucleus(), \"p\": polyPlane(), \"q\": polyPlane(width: 2),
+        \"c\": nCloth(inputMesh: \"p\", restShapeMesh: \"q\")})";
+    let (scene, _) = read_scene_text(ron, Path::new("out.ron")).unwrap();
+    let (text, _) = maya_ascii(&scene, "out").unwrap();
+    assert!(text.contains("connectAttr \"qShape.w[0]\" \"cShape.rsmh\";"), "{text}");
+    for text in [text.replace(".w[0]", ".wm[0]"), text] {
+        assert!(imported(&text).scene == scene, "{}", write_scene(&imported(&text).scene));
+    }
 }
 
 #[test]

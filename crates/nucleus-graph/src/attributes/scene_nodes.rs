@@ -73,7 +73,7 @@ pub mod surface_shape {
         }
         "Connections" {
             /// The surface in world space.
-            WORLD_MESH: Plugged = plug("worldMesh", "wm", Data::Mesh).multi().output();
+            WORLD_MESH: Plugged = plug("worldMesh", "w", Data::Mesh).multi().output();
             /// The surface that this node displays.
             IN_MESH: Plugged = plug("inMesh", "i", Data::Mesh);
         }
