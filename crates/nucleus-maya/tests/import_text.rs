@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use nucleus_graph::attributes::{n_cloth, point_emitter};
+use nucleus_graph::attributes::{n_cloth, point_emitter, transform};
 use nucleus_graph::scene::{read_scene_text, write_scene};
 use nucleus_maya::animation::Evaluator;
 use nucleus_maya::ascii::SourceText;
@@ -158,6 +158,68 @@ fn outputs_of_utility_nodes_may_be_connected_as_a_whole() {
     );
     near(read.origin("m", 2.0), [10.0, 7.0, 1.0]);
     assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
+}
+
+/// The transform of the mesh at frames 1 to 3, in the units of a file.
+fn converted(units: &str, nodes: &str) -> [[[f64; 3]; 2]; 3] {
+    let read = read(&format!("currentUnit {units};\n{}{nodes}", mesh("m")));
+    let graph = &read.imported.scene.graph;
+    let id = graph.find("m").unwrap();
+    [1.0, 2.0, 3.0].map(|frame| {
+        let at = graph.at(frame);
+        [at.get(id, &transform::TRANSLATE), at.get(id, &transform::ROTATE)]
+    })
+}
+
+/// Maya computes in centimetres, radians and ticks of 1/6000 s, and its conversions keep 1 in one unit 1 in the other.
+#[test]
+fn a_conversion_keeps_a_number_in_the_unit_of_the_other_attribute() {
+    let expression = "createNode expression -n \"e\"; setAttr \".ixp\" -type \"string\" \".O[0] = frame * 10\";\n\
+                      createNode unitConversion -n \"uc\";\nconnectAttr \"e.out[0]\" \"uc.i\";\n";
+    let turned =
+        format!("{expression}setAttr \"uc.cf\" 0.017453292519943295; connectAttr \"uc.o\" \"m.ry\";\n");
+    let moved = format!("{expression}setAttr \"uc.cf\" 100; connectAttr \"uc.o\" \"m.ty\";\n");
+    let found = converted("-l centimeter -a degree -t film", &turned);
+    (0..3).for_each(|k| near(found[k][1], [0.0, 10.0 * (k + 1) as f64, 0.0]));
+    // Ten units of length are ten metres.
+    let found = converted("-l meter -a degree -t film", &moved);
+    (0..3).for_each(|k| near(found[k][0], [0.0, 1000.0 * (k + 1) as f64, 0.0]));
+}
+
+#[test]
+fn an_angle_that_drives_a_number_is_converted_to_the_unit_of_the_file() {
+    let nodes = "createNode transform -n \"drv\"; setAttr \".r\" -type \"double3\" 0 90 0;\n\
+                 createNode unitConversion -n \"uc\"; setAttr \".cf\" 57.295779513082323;\n\
+                 createNode multiplyDivide -n \"md\"; setAttr \".i2\" -type \"float3\" 0.1 1 1;\n\
+                 connectAttr \"drv.ry\" \"uc.i\"; connectAttr \"uc.o\" \"md.i1x\"; connectAttr \"md.ox\" \"m.ty\";\n";
+    near(converted("-l centimeter -a degree -t film", nodes)[0][0], [0.0, 9.0, 0.0]);
+    let whole = nodes.replace("md.ox\" \"m.ty", "uc2.o\" \"m.r").replace(
+        "connectAttr \"drv.ry\"",
+        "createNode unitConversion -n \"uc2\"; setAttr \".cf\" 0.017453292519943295; connectAttr \"md.o\" \"uc2.i\"; connectAttr \"drv.ry\"",
+    );
+    near(converted("-l centimeter -a degree -t film", &whole)[0][1], [9.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_keyed_angle_keeps_its_degrees_through_a_conversion() {
+    let nodes = "createNode animCurveTA -n \"a\"; setAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 1 0 3 90;\n\
+                 createNode unitConversion -n \"uc\"; setAttr \".cf\" 57.295779513082323;\n\
+                 connectAttr \"a.o\" \"uc.i\"; connectAttr \"uc.o\" \"m.ty\";\n";
+    near(converted("-l centimeter -a degree -t film", nodes)[1][0], [0.0, 45.0, 0.0]);
+}
+
+#[test]
+fn a_time_that_drives_a_number_is_converted_to_frames() {
+    for (rate, ticks) in [("film", 250.0), ("pal", 240.0)] {
+        let nodes = format!(
+            "createNode timeToUnitConversion -n \"tu\"; setAttr \".cf\" {};\n\
+             createNode multiplyDivide -n \"md\"; setAttr \".i2\" -type \"float3\" 10 1 1;\n\
+             connectAttr \":time1.o\" \"tu.i\"; connectAttr \"tu.o\" \"md.i1x\"; connectAttr \"md.ox\" \"m.ty\";\n",
+            1.0 / ticks
+        );
+        let found = converted(&format!("-l centimeter -a degree -t {rate}"), &nodes);
+        (0..3).for_each(|k| near(found[k][0], [0.0, 10.0 * (k + 1) as f64, 0.0]));
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use nucleus_graph::graph::Channel;
 use crate::omissions::{Cause, Omissions};
 use crate::scene::{NodeId, Vector3, Wire};
 
-use super::evaluator::Evaluator;
+use super::evaluator::{Evaluator, is_conversion};
 
 /// Most frames that are sampled.
 const MAX_FRAMES: i64 = 100_000;
@@ -78,9 +78,8 @@ impl Evaluator<'_> {
         omissions: &mut Omissions,
     ) -> Option<Channel> {
         let (mut source, mut total) = (wire.from, factor);
-        // A conversion of units only scales.
-        while self.scene.kind(source.node) == "unitConversion" {
-            total *= self.scene.stored_or(source.node, &["cf", "conversionFactor"], 1.0);
+        while is_conversion(self.scene.kind(source.node)) {
+            total *= self.conversion(source.node);
             source = self.scene.source(source.node, &["i", "input"], None)?.from;
         }
         let kind = self.scene.kind(source.node);

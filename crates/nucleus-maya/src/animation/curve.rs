@@ -247,11 +247,7 @@ fn fixed([frames, values]: [f64; 2]) -> f64 {
 fn key_units(scene: &MayaScene, id: NodeId) -> [f64; 2] {
     let (own, units) = (scene.units_of(id), scene.units);
     let kind = scene.kind(id);
-    let quantity = match kind {
-        "animCurveTL" | "animCurveUL" => Quantity::Length,
-        "animCurveTA" | "animCurveUA" => Quantity::Angle,
-        _ => Quantity::Number,
-    };
+    let quantity = Quantity::of(kind, "output");
     let frames = if kind.starts_with("animCurveU") { 1.0 } else { units.fps / own.fps };
     [frames, own.of(quantity) / units.of(quantity)]
 }

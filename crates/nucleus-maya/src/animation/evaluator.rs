@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::scene::{MayaScene, NodeId, PlugRef, Vector3, Wire};
+use crate::scene::{MayaScene, NodeId, PlugRef, Quantity, Vector3, Wire};
 
 use super::curve::MayaCurve;
 use super::names;
@@ -86,10 +86,7 @@ impl<'s> Evaluator<'s> {
                 let input = self.number(node, &["i", "input"], frame)?;
                 Some(self.curve(node)?.value_at(input))
             }
-            "unitConversion" => Some(get(&["i", "input"], 0.0) * get(&["cf", "conversionFactor"], 1.0)),
-            "timeToUnitConversion" | "unitToTimeConversion" => {
-                Some(get(&["i", "input"], 0.0) * get(&["cf", "conversionFactor"], 1.0))
-            }
+            kind if is_conversion(kind) => Some(get(&["i", "input"], 0.0) * self.conversion(node)),
             "addDoubleLinear" => Some(get(&["i1", "input1"], 0.0) + get(&["i2", "input2"], 0.0)),
             "multDoubleLinear" => Some(get(&["i1", "input1"], 0.0) * get(&["i2", "input2"], 1.0)),
             "multiplyDivide" | "reverse" | "pairBlend" | "clamp" => {
@@ -128,6 +125,18 @@ impl<'s> Evaluator<'s> {
             }
             _ => None,
         }
+    }
+
+    /// The factor of a conversion, for values in the units of the scene: that of the file is for Maya's internal units.
+    pub(super) fn conversion(&self, node: NodeId) -> f64 {
+        let scene = self.scene;
+        let internal = |plug: PlugRef| {
+            scene.units.internal(Quantity::of(scene.kind(plug.node), scene.path(plug).last().name))
+        };
+        let is_output = |wire: &Wire| matches!(scene.path(wire.from).last().name, "o" | "output");
+        let from = scene.source(node, &["i", "input"], None).map_or(1.0, |wire| internal(wire.from));
+        let to = scene.leaving(node).find(is_output).map_or(1.0, |wire| internal(wire.to));
+        scene.stored_or(node, &["cf", "conversionFactor"], 1.0) * from / to
     }
 
     /// One component of the output of a node that computes three from its inputs, each stored or connected by component or
@@ -224,6 +233,10 @@ impl<'s> Evaluator<'s> {
         if names::is_constraint(self.scene.kind(node)) {
             return Some(self.constrained(node, frame)?[names::driven_by(last)?.0][part]);
         }
+        if is_conversion(self.scene.kind(node)) {
+            let input = self.scene.source(node, &["i", "input"], None)?;
+            return Some(self.nested(|| self.part_of(input, part, frame))? * self.conversion(node));
+        }
         if matches!(self.scene.kind(node), "multiplyDivide" | "reverse" | "pairBlend" | "clamp") {
             return self.nested(|| self.blended(node, last, part, frame));
         }
@@ -233,6 +246,11 @@ impl<'s> Evaluator<'s> {
         }
         self.nested(|| Some(self.vector(node, vector, [default; 3], frame)[part]))
     }
+}
+
+/// Whether Maya inserts such nodes between plugs of differing quantities: they only scale.
+pub(super) fn is_conversion(kind: &str) -> bool {
+    matches!(kind, "unitConversion" | "timeToUnitConversion" | "unitToTimeConversion")
 }
 
 /// The component that a name ends with: `ox`, `outputX`, `outTranslateY`, `outputG`.

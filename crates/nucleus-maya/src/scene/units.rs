@@ -24,6 +24,8 @@ pub enum Quantity {
     Length,
     /// An angle: in a file, in its unit of angle.
     Angle,
+    /// A time: in a file, in its frames.
+    Time,
     /// A number without a unit.
     Number,
 }
@@ -38,7 +40,36 @@ impl Quantity {
             ("pointEmitter", "vsw" | "volumeSweep") | ("nCloth", "reae" | "restitutionAngle") => Self::Angle,
             // The same names are other attributes on nodes of construction history.
             (kind, _) if kind.starts_with("poly") => Self::Number,
+            ("time", _) => Self::Time,
+            (kind, _) if kind.starts_with("animCurve") => Self::of_curve(kind, name),
+            ("pairBlend", _) => Self::of_prefix(
+                name,
+                ["it", "ot", "inTranslate", "outTranslate"],
+                ["ir", "or", "inRotate", "outRotate"],
+            ),
+            ("parentConstraint" | "pointConstraint" | "orientConstraint", _) => {
+                Self::of_prefix(name, ["ct", "constraintTranslate"], ["cr", "constraintRotate"])
+            }
             _ => Self::of_transform(name),
+        }
+    }
+
+    /// The letters after `animCurve` say what a curve depends on, and what it gives.
+    fn of_curve(kind: &str, name: &str) -> Self {
+        match (kind.as_bytes(), name) {
+            ([.., b'L'], "o" | "output") => Self::Length,
+            ([.., b'A'], "o" | "output") => Self::Angle,
+            ([.., b'T'], "o" | "output") | ([.., b'T', _], "i" | "input") => Self::Time,
+            _ => Self::Number,
+        }
+    }
+
+    fn of_prefix<const N: usize>(name: &str, lengths: [&str; N], angles: [&str; N]) -> Self {
+        let begins = |all: [&str; N]| all.iter().any(|prefix| name.starts_with(prefix));
+        match (begins(lengths), begins(angles)) {
+            (true, _) => Self::Length,
+            (_, true) => Self::Angle,
+            _ => Self::Number,
         }
     }
 
@@ -60,6 +91,9 @@ impl Quantity {
     }
 }
 
+/// Maya's ticks in a second.
+const TICKS: f64 = 6000.0;
+
 /// Maya's names of frame rates.
 const RATES: [(&str, f64); 7] = [
     ("game", 15.0),
@@ -72,12 +106,22 @@ const RATES: [(&str, f64); 7] = [
 ];
 
 impl Units {
-    /// Centimetres or degrees in a unit of a quantity; 1 for a plain number.
+    /// Centimetres, degrees or seconds in a unit of a quantity; 1 for a plain number.
     pub fn of(&self, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Length => self.centimetres,
             Quantity::Angle => self.degrees,
+            Quantity::Time => 1.0 / self.fps,
             Quantity::Number => 1.0,
+        }
+    }
+
+    /// Units in which Maya computes (centimetres, radians, ticks) in a unit of a quantity.
+    pub fn internal(&self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Angle => self.degrees.to_radians(),
+            Quantity::Time => TICKS / self.fps,
+            _ => self.of(quantity),
         }
     }
 
