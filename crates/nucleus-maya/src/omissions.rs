@@ -50,6 +50,8 @@ pub enum Cause {
     Approximate(String),
     /// A mesh that is written at its first frame only, and why.
     Motion(String),
+    /// Particles whose transform is animated.
+    MovingParticles,
     /// A part of a constraint.
     Component(String),
     /// A connection between nodes that are carried over.
@@ -88,6 +90,7 @@ impl Cause {
             Self::Driven(kind) => format!("it is driven by a {kind}, which is not read"),
             Self::Expression(why) => format!("the expression cannot be translated: {why}"),
             Self::Connection(why) => format!("the connection is refused: {why}"),
+            Self::MovingParticles => "the transform of these particles is animated".to_owned(),
             Self::CacheRange => "caches are played forwards, once".to_owned(),
             Self::Cache(_) => "the scene plays recorded results".to_owned(),
         }
@@ -114,6 +117,7 @@ impl Cause {
             Self::Driven(_) | Self::Expression(_) => "it keeps the value stored in the file",
             Self::Approximate(_) => "small differences",
             Self::Motion(_) => "it stands still; import its file into Maya for the motion",
+            Self::MovingParticles => "particles start at its first placement, and do not move with it",
             Self::Component(_) => "this part of the constraint does not act",
             Self::Connection(_) => "the connection is left out",
             Self::CacheRange => "outside of the range of the cache the object is simulated",

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use nucleus_graph::attributes::{n_cloth, point_emitter, transform};
+use nucleus_graph::attributes::{n_cloth, n_particle, point_emitter, transform};
 use nucleus_graph::scene::{read_scene_text, write_scene};
 use nucleus_maya::animation::Evaluator;
 use nucleus_maya::ascii::SourceText;
@@ -299,6 +299,35 @@ fn lengths_and_angles_of_emitters_and_cloths_are_converted() {
     assert_eq!(node("e").get(&point_emitter::SECTION_RADIUS), 200.0);
     assert_eq!(node("e").get(&point_emitter::VOLUME_SWEEP), 1.0_f64.to_degrees());
     assert_eq!(node("c").get(&n_cloth::RESTITUTION_ANGLE), 2.0_f64.to_degrees());
+}
+
+/// Two particles below a group at (0, 10, 0), whose own transform is at (5, 0, 0) and twice as large.
+const PARTICLES: &str = "createNode nucleus -n \"n\";\ncreateNode transform -n \"grp\"; setAttr \".t\" -type \"double3\" 0 10 0;\n\
+    createNode transform -n \"p\" -p \"grp\"; setAttr \".t\" -type \"double3\" 5 0 0; setAttr \".s\" -type \"double3\" 2 2 2;\n\
+    createNode nParticle -n \"pShape\" -p \"p\"; setAttr \".pos0\" -type \"vectorArray\" 2 1 2 3 4 5 6;\n\
+    setAttr \".vel0\" -type \"vectorArray\" 2 1 0 0 0 3 0;\n\
+    connectAttr \"pShape.cust\" \"n.niao[0]\";\nconnectAttr \"pShape.stst\" \"n.nias[0]\";\n";
+
+#[test]
+fn particles_start_in_world_space() {
+    let read = read(PARTICLES);
+    let graph = &read.imported.scene.graph;
+    let particles = graph.node(graph.find("p").unwrap());
+    // Scaled by 2, then moved by 5 and by 10; a velocity is only scaled.
+    assert_eq!(particles.get(&n_particle::POSITION0), [[7.0, 14.0, 6.0], [13.0, 20.0, 12.0]]);
+    assert_eq!(particles.get(&n_particle::VELOCITY0), [[2.0, 0.0, 0.0], [0.0, 6.0, 0.0]]);
+    assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
+}
+
+#[test]
+fn particles_below_an_animated_transform_start_at_its_first_placement_and_are_listed() {
+    let keys = "createNode animCurveTL -n \"a\"; setAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" 1 10 3 90;\n\
+                connectAttr \"a.o\" \"grp.ty\";\n";
+    let read = read(&format!("{PARTICLES}{keys}"));
+    let graph = &read.imported.scene.graph;
+    let particles = graph.node(graph.find("p").unwrap());
+    assert_eq!(particles.get(&n_particle::POSITION0)[0], [7.0, 14.0, 6.0]);
+    assert!(read.omits("p", "is animated"), "{}", read.imported.omissions);
 }
 
 #[test]

@@ -74,6 +74,12 @@ impl Matrix {
         [0, 1, 2].map(|k| p[0] * m[0][k] + p[1] * m[1][k] + p[2] * m[2][k] + m[3][k])
     }
 
+    /// The image of a vector between two points.
+    pub fn direction(&self, v: [f64; 3]) -> [f64; 3] {
+        let m = &self.0;
+        [0, 1, 2].map(|k| v[0] * m[0][k] + v[1] * m[1][k] + v[2] * m[2][k])
+    }
+
     /// The inverse; `None` if a scale is zero.
     pub fn inverse(&self) -> Option<Self> {
         let m = nalgebra::Matrix4::from_fn(|row, column| self.0[row][column]);

@@ -143,6 +143,9 @@ impl<'s> Importer<'s> {
         if node_type.is_a(&n_base::N_BASE) {
             self.set_creation_values(kept.node, id, node_type);
         }
+        if node_type.is_a(&n_particle::N_PARTICLE) && !self.is_own {
+            self.place_particles(kept.node, id);
+        }
         Ok(())
     }
 

@@ -5,10 +5,10 @@
 //! orientation, rotation, axis, shear, scale.
 
 use nucleus_graph::animation::{Curve, Key};
-use nucleus_graph::attributes::{Attribute, Choice, Value, transform};
+use nucleus_graph::attributes::{Attribute, Choice, Value, n_particle, transform};
 use nucleus_graph::graph::{Channel, NodeId as OwnId, Setting};
 
-use crate::animation::{Matrix, names};
+use crate::animation::{Evaluator, Matrix, names};
 use crate::omissions::Cause;
 use crate::scene::NodeId;
 
@@ -123,6 +123,28 @@ impl Importer<'_> {
         if scale != to {
             self.hang(to, Some(scale));
             self.set_channels(to, &transform::TRANSLATE.row, fixed(minus(sp)), 0.0);
+        }
+    }
+
+    /// Takes the initial state of particles from the space of their transform to world space, in which ours are.
+    pub(super) fn place_particles(&mut self, from: NodeId, to: OwnId) {
+        let world = self.values.world(from, self.frames[0] as f64);
+        let rows: [(&'static Attribute, bool); 4] = [
+            (&n_particle::POSITION0.row, true),
+            (&n_particle::POSITION.row, true),
+            (&n_particle::VELOCITY0.row, false),
+            (&n_particle::VELOCITY.row, false),
+        ];
+        for (row, is_place) in rows {
+            let stored = self.graph.node(to).settings().get(row.name);
+            let Some(Setting::Fixed(Value::Vectors(all))) = stored else { continue };
+            let image = |p: &[f64; 3]| if is_place { world.point(*p) } else { world.direction(*p) };
+            let placed = all.iter().map(image).collect();
+            self.set(to, row, Setting::Fixed(Value::Vectors(placed)));
+        }
+        let moves = |frame: i64| self.values.world(from, frame as f64) != world;
+        if Evaluator::sampled(self.frames).any(moves) {
+            self.omissions.add(self.graph.node(to).name(), Cause::MovingParticles);
         }
     }
 
