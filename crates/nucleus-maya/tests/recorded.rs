@@ -108,6 +108,30 @@ fn a_cloth_plays_the_cache_that_lies_with_its_scene() {
     assert!(solved.omissions.to_string().contains("`--simulate` says so"));
 }
 
+/// Which frames of the scene a cloth plays of a cache of frames 0 to 11, where its node sets these values.
+fn played(values: &str) -> Vec<i32> {
+    let folder = tempfile::tempdir().unwrap();
+    cached_drape(folder.path());
+    let text = fs::read_to_string(folder.path().join("drape.ma")).unwrap();
+    let text = text.replace("\tsetAttr \".ss\" 101;\n\tsetAttr \".se\" 110;\n\tsetAttr \".sf\" 1;\n", values);
+    fs::write(folder.path().join("drape.ma"), text).unwrap();
+    let frames: Vec<_> = (0..=11).map(|frame| (frame, lifted(frame))).collect();
+    write_cache(folder.path(), "show", "nClothShape1", &frames);
+    let imported = import(folder.path(), "drape.ma", false);
+    let graph = &imported.scene.graph;
+    let cloth = graph.find("nCloth1").unwrap();
+    (1..=48).filter(|frame| graph.at(f64::from(*frame)).get(cloth, &n_base::PLAY_FROM_CACHE)).collect()
+}
+
+#[test]
+fn values_of_a_cache_that_a_file_leaves_out_are_zero() {
+    let end = "setAttr \".se\" 11;\n";
+    assert_eq!(played(&format!("{end}setAttr \".sf\" 5;\n")), Vec::from_iter(5..=16));
+    assert_eq!(played(end), Vec::from_iter(1..=11), "the source and the scene begin at frame 0");
+    assert_eq!(played(&format!("{end}setAttr \".ss\" 3;\n")), Vec::from_iter(1..=8), "frame 3 is at 0");
+    assert_eq!(played(""), Vec::from_iter(1..=11));
+}
+
 #[test]
 fn frames_that_a_cache_does_not_have_are_simulated_and_counted() {
     let folder = tempfile::tempdir().unwrap();

@@ -156,16 +156,15 @@ impl Importer<'_> {
         }
     }
 
+    /// A file leaves out values at Maya's default, which is 0; without a source range its frames are those of the scene.
     fn clip(&self, cache: NodeId) -> Clip {
         let stored = |names: [&str; 2]| self.scene.stored(cache, &names);
-        let first = stored(["ss", "sourceStart"]).unwrap_or(f64::MIN);
-        let last = stored(["se", "sourceEnd"]).unwrap_or(f64::MAX);
-        let start = stored(["sf", "startFrame"]).filter(|_| first > f64::MIN);
-        let scale = stored(["sc", "scale"]).filter(|scale| *scale > 0.0).unwrap_or(1.0);
-        match start {
-            Some(start) => Clip { start, source: [first, last], scale },
-            // Without a source range its frames are those of the scene.
-            None => Clip { start: 0.0, source: [0.0, last], scale: 1.0 },
+        let first = stored(["ss", "sourceStart"]).unwrap_or(0.0);
+        let last = if first < 0.0 { 0.0 } else { f64::MAX };
+        Clip {
+            start: stored(["sf", "startFrame"]).unwrap_or(0.0),
+            source: [first, stored(["se", "sourceEnd"]).unwrap_or(last)],
+            scale: stored(["sc", "scale"]).filter(|scale| *scale > 0.0).unwrap_or(1.0),
         }
     }
 
