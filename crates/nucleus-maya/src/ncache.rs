@@ -95,12 +95,24 @@ impl NCache {
 
     /// The positions of an object at a frame, to half a tick; `None` if the cache has none there.
     pub fn positions(&self, object: &str, frame: f64) -> Option<&[[f64; 3]]> {
-        let sample = self.sample_at(frame)?;
-        let channel = sample.channels.iter().find(|channel| channel.object() == Some(object))?;
-        match &channel.data {
-            ChannelData::Vectors(vectors) => Some(vectors),
-            ChannelData::Numbers(_) => None,
-        }
+        self.sample_at(frame)?.positions(object)
+    }
+
+    /// The samples before and after a frame, and the share of the later one. `None` outside of the recording, and where the
+    /// samples are further apart than a frame and than the closest ones of the cache: frames are missing there.
+    pub fn samples_around(&self, frame: f64) -> Option<([&CacheSample; 2], f64)> {
+        let after = self.samples.partition_point(|sample| sample.frame <= frame);
+        let pair = [self.samples.get(after.checked_sub(1)?)?, self.samples.get(after)?];
+        let distance = pair[1].frame - pair[0].frame;
+        let is_gap = (distance - self.interval()) * self.ticks_per_frame > 2.0 * HALF_TICK;
+        (!is_gap).then(|| (pair, (frame - pair[0].frame) / distance))
+    }
+
+    /// The distance of samples in frames: one, or that of the closest if they are further apart.
+    fn interval(&self) -> f64 {
+        let distances = self.samples.windows(2).map(|pair| pair[1].frame - pair[0].frame);
+        let least = distances.filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least.max(1.0) } else { 1.0 }
     }
 
     /// The whole frames at which an object has positions, in order.
@@ -153,7 +165,27 @@ impl NCache {
     }
 }
 
+impl CacheSample {
+    /// The positions of an object.
+    pub fn positions(&self, object: &str) -> Option<&[[f64; 3]]> {
+        self.channels.iter().find(|channel| channel.object() == Some(object))?.vectors()
+    }
+
+    /// A channel.
+    pub fn channel(&self, name: &str) -> Option<&CacheChannel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+}
+
 impl CacheChannel {
+    /// The vectors, if it has any.
+    pub fn vectors(&self) -> Option<&[[f64; 3]]> {
+        match &self.data {
+            ChannelData::Vectors(vectors) => Some(vectors),
+            ChannelData::Numbers(_) => None,
+        }
+    }
+
     /// The object whose positions these are.
     pub fn object(&self) -> Option<&str> {
         if !matches!(self.data, ChannelData::Vectors(_)) {

@@ -133,6 +133,28 @@ fn values_of_a_cache_that_a_file_leaves_out_are_zero() {
 }
 
 #[test]
+fn a_cache_that_is_stretched_in_time_is_interpolated_between_its_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    cached_drape(folder.path());
+    let text = fs::read_to_string(folder.path().join("drape.ma")).unwrap();
+    fs::write(folder.path().join("drape.ma"), text.replace("\".sf\" 1;", "\".sf\" 1; setAttr \".sc\" 2;"))
+        .unwrap();
+    let frames: Vec<_> = (101..=110).map(|frame| (frame, lifted(frame))).collect();
+    write_cache(folder.path(), "show", "nClothShape1", &frames);
+    let imported = import(folder.path(), "drape.ma", false);
+    let said = imported.omissions.to_string();
+    assert!(said.contains("it plays frames 1 to 19 of `show`;"), "{said}");
+    let mut run = run(&imported);
+    for frame in 1..=19 {
+        // The motion is linear: half of a tenth for each frame of the scene, from 5 above the ground.
+        let expected = (5.0 + 0.05 * f64::from(frame - 1)) / 100.0;
+        let y = point(&run, 220).y;
+        assert!((y - expected).abs() < 1e-7, "frame {frame}: {y}, {expected}");
+        run.advance(&mut ());
+    }
+}
+
+#[test]
 fn frames_that_a_cache_does_not_have_are_simulated_and_counted() {
     let folder = tempfile::tempdir().unwrap();
     cached_drape(folder.path());

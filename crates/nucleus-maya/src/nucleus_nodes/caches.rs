@@ -11,7 +11,7 @@ use nucleus_graph::attributes::{Value, n_base, n_cloth, n_particle};
 use nucleus_graph::graph::{NodeId as OwnId, Setting};
 
 use crate::animation::Matrix;
-use crate::ncache::{ChannelData, NCache};
+use crate::ncache::{CacheChannel, CacheSample, NCache};
 use crate::omissions::Cause;
 use crate::scene::{NodeId, locate};
 
@@ -120,10 +120,7 @@ impl Importer<'_> {
         let mut frames: Vec<(i64, Vec<[f64; 3]>)> = Vec::new();
         for frame in self.frames[0]..=self.frames[1] {
             let Some(at) = clip.at(frame as f64) else { continue };
-            if let Some((points, placement)) = self.positions(&read, from, at, frame as f64) {
-                let points: Vec<[f64; 3]> = points.iter().map(|p| placement.point(*p)).collect();
-                frames.push((frame, points));
-            }
+            frames.extend(self.positions(&read, from, at, frame as f64).map(|points| (frame, points)));
         }
         let counts = frames.windows(2).find(|pair| pair[1].1.len() < pair[0].1.len());
         if let Some(pair) = counts {
@@ -168,46 +165,64 @@ impl Importer<'_> {
         }
     }
 
-    /// The positions in a cache at one of its frames, and the placement that takes them to world space.
-    fn positions<'c>(
-        &self,
-        cache: &'c NCache,
-        object: NodeId,
-        at: f64,
-        frame: f64,
-    ) -> Option<(&'c [[f64; 3]], Matrix)> {
-        let scene = self.scene;
-        let names = cache.objects();
-        let own = scene.name(object).rsplit(':').next().unwrap_or_default();
-        let is_own = |name: &&&str| name.rsplit(':').next() == Some(own);
-        let name = match names.iter().find(is_own) {
-            Some(name) => *name,
-            None if names.len() == 1 => names[0],
-            None => return None,
+    /// The positions of an object in world space: `at` is the frame of the cache, `frame` that of the scene.
+    ///
+    /// Between samples they are interpolated linearly, as in Maya, if both have as many points.
+    fn positions(&self, cache: &NCache, object: NodeId, at: f64, frame: f64) -> Option<Vec<[f64; 3]>> {
+        let channel = self.channel_of(cache, object)?;
+        let is_particle = self.scene.kind(object) == "nParticle";
+        let of = |sample| recorded(sample, channel, is_particle);
+        let (points, is_world) = match cache.sample_at(at) {
+            Some(sample) => of(sample).map(|(points, is_world)| (points.to_vec(), is_world))?,
+            None => {
+                let ([before, after], share) = cache.samples_around(at)?;
+                let ((a, is_world), (b, is_same)) = (of(before)?, of(after)?);
+                (a.len() == b.len() && is_world == is_same).then(|| (mixed(a, b, share), is_world))?
+            }
         };
+        let space = if is_world { Matrix::IDENTITY } else { self.space_of(object, frame) };
+        Some(points.into_iter().map(|point| space.point(point)).collect())
+    }
+
+    /// The object of a cache whose positions an object plays.
+    fn channel_of<'c>(&self, cache: &'c NCache, object: NodeId) -> Option<&'c str> {
+        let names = cache.objects();
+        let own = self.scene.name(object).rsplit(':').next().unwrap_or_default();
+        let is_own = |name: &&&str| name.rsplit(':').next() == Some(own);
+        names.iter().find(is_own).or(names.first().filter(|_| names.len() == 1)).copied()
+    }
+
+    /// The space of recorded positions: that of particles, that of the mesh that shows a cloth, or the world.
+    fn space_of(&self, object: NodeId, frame: f64) -> Matrix {
+        let scene = self.scene;
         if scene.kind(object) == "nParticle" {
-            let sample = cache.sample_at(at)?;
-            let data = |part: &str| {
-                let name = format!("{name}_{part}");
-                sample.channels.iter().find(|channel| channel.name == name).map(|channel| &channel.data)
-            };
-            if let Some(ChannelData::Vectors(points)) = data("worldPosition") {
-                return Some((points, Matrix::IDENTITY));
-            }
-            // Before the first birth a cache has a count alone.
-            if let (None, Some(ChannelData::Numbers(_))) = (data("position"), data("count")) {
-                return Some((&[], Matrix::IDENTITY));
-            }
-            return Some((cache.positions(name, at)?, self.values.world(object, frame)));
+            return self.values.world(object, frame);
         }
-        let points = cache.positions(name, at)?;
-        // In the space of the mesh that shows the cloth, or in world space.
         let is_local = scene.switch_or(object, &["lsou", "localSpaceOutput"], false);
         let is_output =
             |wire: &crate::scene::Wire| matches!(scene.path(wire.from).last().name, "omsh" | "outputMesh");
         let shown = scene.leaving(object).find(is_output).filter(|_| is_local);
-        Some((points, shown.map_or(Matrix::IDENTITY, |wire| self.values.world(wire.to.node, frame))))
+        shown.map_or(Matrix::IDENTITY, |wire| self.values.world(wire.to.node, frame))
     }
+}
+
+/// The positions of an object in a sample, and whether they are in world space whatever the object's own space is.
+fn recorded<'c>(sample: &'c CacheSample, object: &str, is_particle: bool) -> Option<(&'c [[f64; 3]], bool)> {
+    let part = |part: &str| sample.channel(&format!("{object}_{part}"));
+    if let (true, Some(points)) = (is_particle, part("worldPosition").and_then(CacheChannel::vectors)) {
+        return Some((points, true));
+    }
+    // Before the first birth a cache has a count alone.
+    if is_particle && part("position").is_none() && part("count").is_some_and(|one| one.vectors().is_none()) {
+        return Some((&[], true));
+    }
+    Some((sample.positions(object)?, false))
+}
+
+/// Points between two samples.
+fn mixed(before: &[[f64; 3]], after: &[[f64; 3]], share: f64) -> Vec<[f64; 3]> {
+    let mix = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * share);
+    before.iter().zip(after).map(mix).collect()
 }
 
 /// Recorded positions in world space, by frame of the scene.
