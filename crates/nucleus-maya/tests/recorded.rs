@@ -154,6 +154,71 @@ fn a_cache_that_is_stretched_in_time_is_interpolated_between_its_samples() {
     }
 }
 
+/// A cloth that plays a blend of a cache that rises by a tenth for each frame from frame 101, and of one that lies still.
+fn blend(folder: &Path, values: &str, still: &[[f32; 3]]) -> Imported {
+    cached_drape(folder);
+    let text = fs::read_to_string(folder.join("drape.ma")).unwrap();
+    let text = text.replace("\"cache1.ir\" \"nClothShape1.pfc\"", "\"blend.ir\" \"nClothShape1.pfc\"");
+    let second = format!(
+        "createNode cacheBlend -n \"blend\";\n{values}createNode cacheFile -n \"cache2\";\n\
+         setAttr \".cn\" -type \"string\" \"still\"; setAttr \".ss\" 101; setAttr \".se\" 110; setAttr \".sf\" 1;\n\
+         connectAttr \"cache2.ocd[0]\" \"blend.inc[0].vin[4]\"; connectAttr \"cache2.ir\" \"blend.cd[4].ra\";\n\
+         connectAttr \"cache1.ocd[0]\" \"blend.inc[0].vin[0]\"; connectAttr \"cache1.ir\" \"blend.cd[0].ra\";\n"
+    );
+    fs::write(folder.join("drape.ma"), text + &second).unwrap();
+    let rising: Vec<_> = (101..=110).map(|frame| (frame, lifted(frame))).collect();
+    let resting: Vec<_> = (101..=110).map(|frame| (frame, still.to_vec())).collect();
+    write_cache(folder, "show", "nClothShape1", &rising);
+    write_cache(folder, "still", "nClothShape1", &resting);
+    import(folder, "drape.ma", false)
+}
+
+/// The share of the rising cache in a blend at a frame, by the heights of the cloth.
+fn share_of_rising(imported: &Imported, frame: i32) -> f64 {
+    let mut run = run(imported);
+    for _ in 1..frame {
+        run.advance(&mut ());
+    }
+    (100.0 * point(&run, 220).y - 5.0) / (0.1 * f64::from(frame - 1))
+}
+
+#[test]
+fn caches_are_blended_by_their_weights_which_count_in_proportion() {
+    let weights = |a: f64, b: f64| format!("setAttr \".cd[0].w\" {a}; setAttr \".cd[4].w\" {b};\n");
+    let keyed = "setAttr \".cd[4].w\" 1;\ncreateNode animCurveTU -n \"fade\"; setAttr \".tan\" 2;\n\
+                 setAttr -s 2 \".ktv[0:1]\" 1 1 9 0; connectAttr \"fade.o\" \"blend.cd[0].w\";\n";
+    let cases = [
+        (weights(1.0, 0.0), 1.0),
+        (weights(0.0, 1.0), 0.0),
+        (weights(3.0, 1.0), 0.75),
+        // Without values both weigh 1.
+        (String::new(), 0.5),
+        // 1/2 and 1 at frame 5.
+        (keyed.to_owned(), 1.0 / 3.0),
+    ];
+    for (values, expected) in cases {
+        let folder = tempfile::tempdir().unwrap();
+        let imported = blend(folder.path(), &values, &lifted(101));
+        let share = share_of_rising(&imported, 5);
+        assert!((share - expected).abs() < 1e-4, "{values}: {share}, {expected}");
+        let said = imported.omissions.to_string();
+        assert!(said.contains("it plays frames 1 to 10 of `show` and `still`;"), "{said}");
+    }
+}
+
+#[test]
+fn of_caches_with_other_points_the_heaviest_plays_alone_and_is_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    let values = "setAttr \".cd[0].w\" 0.7; setAttr \".cd[4].w\" 0.3;\n";
+    let imported = blend(folder.path(), values, &lifted(101)[..440]);
+    assert!((share_of_rising(&imported, 5) - 1.0).abs() < 1e-4);
+    let said = imported.omissions.to_string();
+    assert!(said.contains("at 10 of these only the heaviest"), "{said}");
+    fs::remove_file(folder.path().join("still.xml")).unwrap();
+    let said = import(folder.path(), "drape.ma", false).omissions.to_string();
+    assert!(said.contains("of `show`, not a further cache: there is no `still.xml`"), "{said}");
+}
+
 #[test]
 fn frames_that_a_cache_does_not_have_are_simulated_and_counted() {
     let folder = tempfile::tempdir().unwrap();

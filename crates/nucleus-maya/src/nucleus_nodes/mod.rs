@@ -6,7 +6,7 @@
 //! | values of attributes, ramps, vertex maps              | `attributes.rs`     |
 //! | transforms with pivots, joints, shear                 | `transforms.rs`     |
 //! | meshes: Nucleus primitives, OBJ files, sequences      | `meshes.rs`         |
-//! | recorded results that an object plays                 | `caches.rs`         |
+//! | recorded results that an object plays                 | `caches.rs`, `tracks.rs` |
 //! | objects, constraints, fields and their connections    | `wiring.rs`, `constraints.rs` |
 //! | all of it in order                                    | [`Importer`]        |
 //!
@@ -21,6 +21,7 @@ mod kept;
 mod meshes;
 mod options;
 mod plan;
+mod tracks;
 mod transforms;
 mod wiring;
 
