@@ -114,6 +114,41 @@ fn components_of_every_kind_are_listed_in_the_short_form() {
 }
 
 #[test]
+fn elements_beyond_the_mesh_are_left_out_of_a_component() {
+    // A polyPlane of 10 by 10 faces has 100 faces, 121 points and 2 * 11 * 10 edges.
+    let list = |kind: u8, last: u32| {
+        format!("setAttr \".ct\" {kind}; setAttr \".el\" 0; setAttr -s 3 \".ci[0:2]\" 0 {last} {};", last + 1)
+    };
+    let all = [list(2, 120), list(3, 219), list(4, 99)];
+    let read = read(&constrained_cloth(&[&all[0], &all[1], &all[2]]));
+    let text = read.text();
+    for listed in ["\"c.vtx[0]\", \"c.vtx[120]\"]", "\"c.e[0]\", \"c.e[219]\"]", "\"c.f[0]\", \"c.f[99]\"]"] {
+        assert!(text.contains(listed), "{listed} is missing in\n{text}");
+    }
+    for (part, kind) in [("part0", "points"), ("part1", "edges"), ("part2", "faces")] {
+        let why = format!("1 of its {kind} are not in the mesh");
+        assert!(read.omits(part, &why), "{}", read.imported.omissions);
+    }
+    assert_round_trip(&read);
+}
+
+#[test]
+fn edges_of_a_component_are_those_that_the_file_stores() {
+    // The file stores the edge 2 3 of the quad 0 1 2 3 first; its face names it third.
+    let quad = "createNode mesh -n \"sheetShape\" -p \"sheet\";\nsetAttr -s 4 \".vt[0:3]\" 0 0 0 1 0 0 1 0 1 0 0 1;\n\
+                setAttr -s 4 \".ed[0:3]\" 2 3 0 0 1 0 1 2 0 3 0 0;\n\
+                setAttr -s 1 \".fc[0]\" -type \"polyFaces\" f 4 1 2 0 3;\n";
+    let edge = "setAttr \".ct\" 3; setAttr \".el\" 0; setAttr -s 2 \".ci[0:1]\" 0 9;";
+    let scene = constrained_cloth(&[edge]);
+    let start = scene.find("createNode mesh").unwrap();
+    let end = scene.find("createNode nucleus").unwrap();
+    let read = read(&format!("{}{quad}{}", &scene[..start], &scene[end..]));
+    assert!(read.text().contains("[\"c.e[2]\"]"), "{}", read.text());
+    assert!(read.omits("part0", "1 of its edges"), "{}", read.imported.omissions);
+    assert_round_trip(&read);
+}
+
+#[test]
 fn a_component_node_with_values_of_its_own_stands_beside_constraints_in_short_form() {
     for all in [[WEAK, POINT, WHOLE], [POINT, WEAK, WHOLE], [POINT, WHOLE, WEAK]] {
         let read = read(&constrained_cloth(&all));

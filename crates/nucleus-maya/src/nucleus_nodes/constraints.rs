@@ -10,6 +10,7 @@ use crate::scene::{ANY, MayaScene, NodeId};
 
 use super::importer::Importer;
 use super::kept::nucleus_of;
+use super::plan::Elements;
 
 /// Maya's numbers of `componentType`.
 const POINT: u32 = 2;
@@ -124,15 +125,7 @@ impl Importer<'_> {
             };
             let kind = scene.count_or(node, &["ct", "componentType"], 0);
             let elements = scene.count_or(node, &["el", "elements"], LISTED);
-            let mut list = scene.listed(node, &["ci", "componentIndices"]);
-            if let (POINT, Some(points), false) = (kind, self.points_of(own), self.is_own) {
-                let all = list.len();
-                list.retain(|point| (*point as usize) < points);
-                if list.len() < all {
-                    let why = format!("{} of its points are not in the mesh", all - list.len());
-                    self.omissions.add(scene.name(node), Cause::Component(why));
-                }
-            }
+            let list = self.known_elements(node, own, kind);
             let said = [
                 "ct",
                 "componentType",
@@ -158,6 +151,28 @@ impl Importer<'_> {
             parts.push(Part { node, index, object: own, name, kind, elements, list, is_plain });
         }
         parts
+    }
+
+    /// The elements that a component lists, by our numbers. Those that the mesh does not have are left from an older one.
+    fn known_elements(&mut self, node: NodeId, object: OwnId, kind: u32) -> Vec<u32> {
+        let list = self.scene.listed(node, &["ci", "componentIndices"]);
+        let (element, name) = match kind {
+            POINT => (ElementKind::Point, "points"),
+            EDGE => (ElementKind::Edge, "edges"),
+            FACE => (ElementKind::Face, "faces"),
+            _ => return list,
+        };
+        let particles = self.points_of(object).map(Elements::of_points);
+        let Some(elements) = self.mesh_elements(object).or(particles.as_ref()).filter(|_| !self.is_own)
+        else {
+            return list;
+        };
+        let known: Vec<u32> = list.iter().filter_map(|index| elements.number(element, *index)).collect();
+        if known.len() < list.len() {
+            let why = format!("{} of its {name} are not in the mesh", list.len() - known.len());
+            self.omissions.add(self.scene.name(node), Cause::Component(why));
+        }
+        known
     }
 
     /// A component node with all its values.

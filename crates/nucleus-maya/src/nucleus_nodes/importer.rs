@@ -15,7 +15,7 @@ use crate::scene::{ANY, MayaScene, NodeId};
 
 use super::kept::{Kept, KeptNodes, MARK_AUTOMATIC};
 use super::options::BorrowedOptions;
-use super::plan::Plan;
+use super::plan::{Elements, Plan};
 
 /// Carries the nodes of a Maya scene over into a graph.
 pub(crate) struct Importer<'s> {
@@ -25,8 +25,8 @@ pub(crate) struct Importer<'s> {
     pub(super) graph: Graph,
     pub(super) kept: KeptNodes,
     own: BTreeMap<usize, OwnId>,
-    /// How many points our mesh nodes have, as far as it is known.
-    points: BTreeMap<OwnId, usize>,
+    /// The elements of our mesh nodes, as far as they are known.
+    elements: BTreeMap<OwnId, Elements>,
     /// First and last frame of the scene.
     pub(super) frames: [i64; 2],
     /// Whether this crate has written the file.
@@ -53,7 +53,7 @@ impl<'s> Importer<'s> {
             graph: Graph::new(),
             kept,
             own: BTreeMap::new(),
-            points: BTreeMap::new(),
+            elements: BTreeMap::new(),
             frames,
             is_own,
             omissions,
@@ -92,10 +92,9 @@ impl<'s> Importer<'s> {
         }
         for (index, id) in &present {
             let plan = plans.remove(index);
-            let points = plan.as_ref().and_then(|plan| plan.points(self.scene));
-            points.into_iter().for_each(|points| {
-                self.points.insert(*id, points);
-            });
+            if let Some(elements) = plan.as_ref().and_then(|plan| plan.elements(self.scene)) {
+                self.elements.insert(*id, elements);
+            }
             self.fill_node(&all[*index], *id, plan)?;
         }
         self.connect(&all, &present)?;
@@ -190,7 +189,12 @@ impl<'s> Importer<'s> {
                 _ => None,
             });
         }
-        self.points.get(&self.graph.source(object, &n_base::INPUT_MESH)?).copied()
+        self.mesh_elements(object).map(|elements| elements.points)
+    }
+
+    /// The elements of the mesh of an object.
+    pub(super) fn mesh_elements(&self, object: OwnId) -> Option<&Elements> {
+        self.elements.get(&self.graph.source(object, &n_base::INPUT_MESH)?)
     }
 
     /// Drops maps and initial states that have another number of points than the mesh: they are left from an older one.

@@ -18,7 +18,7 @@ impl Importer<'_> {
         if let Some((_, path)) = self.options.meshes.iter().find(|(given, _)| names.contains(&given.as_str()))
         {
             return match std::fs::read_to_string(path) {
-                Ok(text) => Plan::Given(text),
+                Ok(text) => Plan::Given(text, path.clone()),
                 Err(error) => Plan::Missing(format!("`{}` cannot be read: {error}", path.display())),
             };
         }
@@ -92,7 +92,7 @@ impl Importer<'_> {
         match plan {
             Plan::Primitive(source, node_type) => self.set_given(source, to, node_type),
             Plan::File(name) => self.set(to, row, file(name)),
-            Plan::Given(text) => {
+            Plan::Given(text, _) => {
                 let name = format!("{stem}.obj");
                 (self.options.write)(&name, text)?;
                 self.set(to, row, file(name));
