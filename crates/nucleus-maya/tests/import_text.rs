@@ -444,6 +444,50 @@ fn shear_is_kept_where_rotation_and_scale_are_animated() {
     assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
 }
 
+/// A mesh below a joint at (3, 0, 0) of its parent, whose scale is 2. The joint leaves that scale out.
+fn jointed(more: &str) -> String {
+    let below =
+        mesh("m").replace("createNode transform -n \"m\";", "createNode transform -n \"m\" -p \"j2\";");
+    format!(
+        "createNode joint -n \"j1\"; setAttr \".s\" -type \"double3\" 2 2 2;\n\
+         createNode joint -n \"j2\" -p \"j1\"; setAttr \".t\" -type \"double3\" 3 0 0;\n{below}\
+         connectAttr \"j1.s\" \"j2.is\";\n{more}"
+    )
+}
+
+#[test]
+fn a_joint_leaves_out_the_scale_of_its_parent() {
+    // The translation is scaled by the parent, what is below the joint is not: 2 * 3 + 1.
+    near(read(&jointed("")).placed("m", [1.0, 0.0, 0.0], 1.0), [7.0, 0.0, 0.0]);
+    let off = read(&jointed("setAttr \"j2.ssc\" no;\n"));
+    near(off.placed("m", [1.0, 0.0, 0.0], 1.0), [8.0, 0.0, 0.0]);
+    let oriented = read(&jointed("setAttr \"j2.jo\" -type \"double3\" 0 0 90;\n"));
+    near(oriented.placed("m", [1.0, 0.0, 0.0], 1.0), [6.0, 1.0, 0.0]);
+}
+
+#[test]
+fn a_joint_leaves_out_an_animated_scale_of_its_parent_below_an_animated_rotation() {
+    let curve = |kind: &str, name: &str, keys: &str| {
+        format!(
+            "createNode animCurve{kind} -n \"{name}\"; setAttr \".tan\" 2; setAttr -s 2 \".ktv[0:1]\" {keys};\n"
+        )
+    };
+    let more = format!(
+        "setAttr \"j2.jo\" -type \"double3\" 0 0 90;\n{}{}connectAttr \"r.o\" \"j2.rz\"; connectAttr \"s.o\" \"j1.sx\";\n",
+        curve("TA", "r", "1 0 3 90"),
+        curve("TU", "s", "1 2 3 4")
+    );
+    let read = read(&jointed(&more));
+    // Only along x is the parent scaled by 2, 3 and 4; the joint turns by 90, 135 and 180 degrees.
+    let half = 0.5_f64.sqrt();
+    for (frame, expected) in [(1.0, [6.0, 1.0, 0.0]), (2.0, [9.0 - half, half, 0.0]), (3.0, [11.0, 0.0, 0.0])]
+    {
+        near(read.placed("m", [1.0, 0.0, 0.0], frame), expected);
+    }
+    assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
+    assert_round_trip(&read);
+}
+
 /// A quad whose blend shape has a weight from 0 at frame 0 to 1 at frame 4.
 fn blended(targets: &str) -> Read {
     read(&format!(

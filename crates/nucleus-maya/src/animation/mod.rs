@@ -22,6 +22,7 @@ mod placement;
 mod script;
 mod syntax;
 
+pub(crate) use channel::keys_at_every_frame;
 pub use curve::MayaCurve;
 pub use evaluator::Evaluator;
 pub use placement::Matrix;

@@ -55,6 +55,8 @@ pub(crate) const BLENDED: [[Vector3; 2]; 2] = [
 ];
 /// The order of rotations.
 pub const ROTATE_ORDER: Names = &["ro", "rotateOrder"];
+/// The scale that a joint leaves out, which is connected from that of its parent.
+pub const INVERSE_SCALE: Vector3 = vector!("is", "inverseScale");
 /// Whether a joint leaves out the scale of its parent.
 pub const SEGMENT_SCALE: Names = &["ssc", "segmentScaleCompensate"];
 /// Whether the parent places it.

@@ -144,6 +144,15 @@ impl Evaluator<'_> {
         self.vector(id, vector, [0.0; 3], frame).map(|x| x * self.scene.units.degrees)
     }
 
+    /// The scale by which a joint undoes that of its parent, between its orientation and its translation.
+    pub(crate) fn compensation(&self, id: NodeId, frame: f64) -> Option<[f64; 3]> {
+        if self.scene.kind(id) != "joint" || !self.scene.switch_or(id, names::SEGMENT_SCALE, true) {
+            return None;
+        }
+        let scale = self.vector(id, names::INVERSE_SCALE, [1.0; 3], frame);
+        (scale != [1.0; 3]).then(|| scale.map(|s| if s == 0.0 { 1.0 } else { 1.0 / s }))
+    }
+
     /// The placement of a transform in the space of its parent.
     pub fn local(&self, id: NodeId, frame: f64) -> Matrix {
         let scale = self.vector(id, names::SCALE, [1.0; 3], frame);
@@ -164,12 +173,8 @@ impl Evaluator<'_> {
         if self.scene.kind(id) == "joint" {
             let orient = Matrix::rotation(self.degrees(id, names::JOINT_ORIENT, frame), 0);
             all = all.then(&axis).then(&turn).then(&orient);
-            if self.scene.switch_or(id, names::SEGMENT_SCALE, true)
-                && let Some(parent) =
-                    self.scene.node(id).parent.filter(|parent| self.scene.kind(*parent) == "joint")
-            {
-                let scale = self.vector(parent, names::SCALE, [1.0; 3], frame);
-                all = all.then(&Matrix::scaling(scale.map(|s| if s == 0.0 { 1.0 } else { 1.0 / s })));
+            if let Some(scale) = self.compensation(id, frame) {
+                all = all.then(&Matrix::scaling(scale));
             }
             return all.then(&Matrix::translation(t));
         }

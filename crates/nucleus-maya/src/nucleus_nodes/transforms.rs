@@ -1,14 +1,14 @@
 //! Transforms of Maya as Nucleus transforms, which have no pivots: the same placement at every frame, with the same keys.
 //!
-//! A point goes through `-sp S Sh sp spt -rp RA R rp rpt T` in Maya (for joints `S RA R JO T`), and through `S R T` in
+//! A point goes through `-sp S Sh sp spt -rp RA R rp rpt T` in Maya (for joints `S RA R JO IS T`), and through `S R T` in
 //! ours. Fixed turns and scales fold pivots into the translation. Where they are animated, the transform becomes a chain:
-//! orientation, rotation, axis, shear, scale.
+//! scale of the segment, orientation, rotation, axis, shear, scale.
 
 use nucleus_graph::animation::{Curve, Key};
 use nucleus_graph::attributes::{Attribute, Choice, Value, n_particle, transform};
 use nucleus_graph::graph::{Channel, NodeId as OwnId, Setting};
 
-use crate::animation::{Evaluator, Matrix, names};
+use crate::animation::{Evaluator, Matrix, keys_at_every_frame, names};
 use crate::omissions::Cause;
 use crate::scene::NodeId;
 
@@ -75,14 +75,15 @@ impl Importer<'_> {
         let is_joint = scene.kind(from) == "joint";
         let orient = if is_joint { self.values.degrees(from, names::JOINT_ORIENT, start) } else { [0.0; 3] };
         let shear = self.values.vector(from, names::SHEAR, [0.0; 3], start);
+        let compensation = self.compensation(from);
         let is_zero = |all: &[[f64; 3]]| all.iter().flatten().all(|x| *x == 0.0);
-        if is_zero(&[rp, rpt, sp, spt, axis, orient, shear]) {
+        if is_zero(&[rp, rpt, sp, spt, axis, orient, shear]) && compensation.is_none() {
             self.hang(to, parent);
             self.set_parts(from, to, &parts);
             return;
         }
         self.refuse_animated_pivots(from);
-        if is_fixed(&parts.rotate) && is_fixed(&parts.scale) {
+        if [&parts.rotate, &parts.scale].into_iter().chain(&compensation).all(is_fixed) {
             self.place_folded(from, to, parent, &parts);
             return;
         }
@@ -91,6 +92,13 @@ impl Importer<'_> {
         let minus = |a: [f64; 3]| a.map(|x| -x);
         let order = parts.order;
         let mut outer = all_shifted(&parts.translate, add(rp, rpt));
+        if let Some(scale) = compensation {
+            let chain = self.add_transform(to, "segment");
+            self.hang(chain, parent);
+            self.set_channels(chain, &transform::TRANSLATE.row, outer, 0.0);
+            self.set_channels(chain, &transform::SCALE.row, scale, 1.0);
+            (parent, outer) = (Some(chain), fixed([0.0; 3]));
+        }
         if orient != [0.0; 3] {
             let chain = self.add_transform(to, "orient");
             self.hang(chain, parent);
@@ -146,6 +154,16 @@ impl Importer<'_> {
         if Evaluator::sampled(self.frames).any(moves) {
             self.omissions.add(self.graph.node(to).name(), Cause::MovingParticles);
         }
+    }
+
+    /// The scale by which a joint undoes that of its parent; `None` if that is 1 throughout.
+    fn compensation(&self, from: NodeId) -> Option<[Channel; 3]> {
+        let part = |part: usize, frame: i64| {
+            Some(self.values.compensation(from, frame as f64).map_or(1.0, |scale| scale[part]))
+        };
+        let channels = [0, 1, 2]
+            .map(|k| keys_at_every_frame(self.frames, |frame| part(k, frame)).unwrap_or(Channel::Fixed(1.0)));
+        channels.iter().any(|channel| *channel != Channel::Fixed(1.0)).then_some(channels)
     }
 
     /// Fixed turns and scales: one transform, or two if there is shear. The translation may be animated.
