@@ -64,6 +64,23 @@ pub const INHERITS: Names = &["it", "inheritsTransform"];
 /// A matrix between the node and its parent.
 pub const OFFSET: Names = &["opm", "offsetParentMatrix"];
 
+/// Whether an attribute is one of a placement, apart from translation, rotation, scale and their order.
+pub(crate) fn is_of_placement(name: &str) -> bool {
+    let vectors = [
+        SHEAR,
+        ROTATE_PIVOT,
+        ROTATE_PIVOT_TRANSLATE,
+        SCALE_PIVOT,
+        SCALE_PIVOT_TRANSLATE,
+        ROTATE_AXIS,
+        JOINT_ORIENT,
+        INVERSE_SCALE,
+    ];
+    let is_in =
+        |vector: &Vector3| vector.parts.iter().chain([&vector.whole]).any(|names| names.contains(&name));
+    vectors.iter().any(is_in) || [SEGMENT_SCALE, INHERITS, OFFSET].iter().any(|names| names.contains(&name))
+}
+
 /// The vector that a component belongs to, and its default.
 pub(crate) fn vector_of(part: &str) -> Option<(Vector3, f64)> {
     let all = [(TRANSLATE, 0.0), (ROTATE, 0.0), (SCALE, 1.0)];

@@ -5,9 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nucleus_graph::attributes::{
     Attribute, Choice, ColorPoint, Effect, Kind, NodeType, Painting, RampPoint, Value, nucleus, particle,
+    transform,
 };
 use nucleus_graph::graph::{Channel, NodeId as OwnId, Setting};
 
+use crate::animation::names;
 use crate::omissions::Cause;
 use crate::scene::{ANY, NodeId, Quantity, Set};
 
@@ -79,6 +81,8 @@ impl Importer<'_> {
                     rows.insert(row.name, row);
                 }
                 None if SILENT.contains(&name) || name == MARK_AUTOMATIC || name == MARK_NAME => {}
+                // The placement is set apart from the values.
+                None if names::is_of_placement(name) && node_type.is_a(&transform::TRANSFORM) => {}
                 None if self.is_own && name.starts_with(MARK_PAINT) => {
                     let row = node_type.attribute(&name[MARK_PAINT.len()..]);
                     painted.extend(row.zip(scene.string(from, &[name])));
@@ -118,7 +122,7 @@ impl Importer<'_> {
 
     /// Rows that other modules set: the transform, the start frame, components.
     fn is_placed_elsewhere(&self, row: &Attribute) -> bool {
-        use nucleus_graph::attributes::{dynamic_constraint, n_component, transform};
+        use nucleus_graph::attributes::{dynamic_constraint, n_component};
         let placed = [
             &transform::TRANSLATE.row,
             &transform::ROTATE.row,
