@@ -44,7 +44,8 @@ pub fn is_maya_scene(path: &Path) -> bool {
 /// Imports a scene; `ron` is the scene file that it will be.
 ///
 /// # Errors
-/// When the file cannot be read or is no Maya ASCII, or a mesh cannot be written. All else is an omission.
+/// When the file cannot be read or is no Maya ASCII, a mesh cannot be written, or nothing takes a mesh that is given. All
+/// else is an omission.
 pub fn import_scene(path: &Path, ron: &Path, options: &mut ImportOptions) -> Result<Imported, ImportError> {
     import_text(SourceText::read(path)?, ron, options)
 }
@@ -70,7 +71,8 @@ pub fn import_text(
     let mut omissions = std::mem::take(&mut maya.omissions);
     let refused = |message: String| ImportError::Refused { file: path.clone(), message };
     let options = BorrowedOptions::of(options, ron);
-    let carried = Importer::new(&maya, own.is_some(), options).run().map_err(refused)?;
+    let importer = Importer::new(&maya, own.is_some(), options);
+    let carried = importer.check_given().and_then(|()| importer.run()).map_err(refused)?;
     omissions.extend(carried.omissions);
     let [start, end] = carried.frames;
     let source = Source::new(ron);

@@ -37,6 +37,6 @@ mod write;
 
 pub use ascii::ImportError;
 pub use import::{Imported, import_scene, import_text, is_maya_scene};
-pub use nucleus_nodes::{ImportOptions, WriteFile};
+pub use nucleus_nodes::{ImportOptions, WriteFile, unknown_mesh};
 pub use preset::{maya_preset, preset_text, read_maya_preset};
 pub use write::maya_ascii;

@@ -351,6 +351,22 @@ fn a_mesh_that_cannot_be_built_is_taken_from_the_artist() {
 }
 
 #[test]
+fn a_mesh_of_the_artist_that_nothing_takes_is_refused_with_the_names_that_there_are() {
+    let given = tempfile::tempdir().unwrap();
+    let obj = given.path().join("m.obj");
+    std::fs::write(&obj, "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n").unwrap();
+    let Err(error) = read_path(&folder().join("drape.ma"), &[("pPlane", &obj)]) else {
+        panic!("it is taken")
+    };
+    let said = error.to_string();
+    assert!(said.contains("`--mesh pPlane=...` names no mesh") && said.contains("`pPlane1`"), "{said}");
+    assert!(
+        read_path(&folder().join("drape.ma"), &[("pPlaneShape1", &obj)]).is_ok(),
+        "the name of the shape"
+    );
+}
+
+#[test]
 fn a_hidden_input_mesh_is_told_from_the_output_of_its_cloth() {
     let read = read("drape.ma");
     let outputs: Vec<&str> = read

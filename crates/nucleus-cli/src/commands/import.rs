@@ -10,7 +10,9 @@ use nucleus_core::Surface;
 use nucleus_graph::attributes::nucleus;
 use nucleus_graph::mesh::read_obj;
 use nucleus_maya::ncache::NCache;
-use nucleus_maya::{ImportOptions, Imported, import_scene, is_maya_scene, preset_text, read_maya_preset};
+use nucleus_maya::{
+    ImportOptions, Imported, import_scene, is_maya_scene, preset_text, read_maya_preset, unknown_mesh,
+};
 
 use crate::process::Outcome;
 use crate::{figures, files, output};
@@ -82,6 +84,9 @@ impl Import {
 impl Import {
     /// Makes a preset of a Maya preset.
     fn preset(self) -> Result<Outcome> {
+        if let Some((name, _)) = self.mesh.first() {
+            bail!(unknown_mesh(name, std::iter::empty()));
+        }
         let (preset, omissions) = read_maya_preset(&self.file)?;
         let out = match self.out {
             Some(out) => out,
@@ -99,6 +104,10 @@ impl Import {
     /// Writes the points of an nCache as OBJ files.
     fn points(self) -> Result<Outcome> {
         let cache = NCache::read(&self.file)?;
+        if let Some((name, _)) = self.mesh.iter().find(|(name, _)| !cache.objects().contains(&name.as_str()))
+        {
+            bail!(unknown_mesh(name, cache.objects().into_iter()));
+        }
         let stem = self.file.file_stem().context("the cache has no name")?.to_owned();
         let folder = self.out.unwrap_or_else(|| PathBuf::from(stem));
         let mut files = 0;

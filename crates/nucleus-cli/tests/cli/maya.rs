@@ -100,3 +100,13 @@ fn a_maya_scene_where_a_scene_or_a_cache_belongs_points_to_import() {
     let missing = nucleus(folder.path(), &["import", "no.ma"]);
     assert_eq!(stderr(&missing).matches("os error 2").count(), 1, "{}", stderr(&missing));
 }
+
+#[test]
+fn a_mesh_whose_name_nothing_has_is_refused() {
+    let folder = folder();
+    bring(folder.path(), "drape.ma");
+    fs::write(folder.path().join("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n").unwrap();
+    let output = nucleus(folder.path(), &["import", "drape.ma", "--mesh", "pPlane=m.obj"]);
+    assert_refused(&output, "`--mesh pPlane=...` names no mesh that is needed; there is `pPlane1`");
+    assert!(!folder.path().join("drape.ron").exists());
+}

@@ -225,7 +225,7 @@ impl<'s> Importer<'s> {
         self.own.get(self.kept.by_node.get(&node)?).copied()
     }
 
-    fn is_mesh(&self, kept: &Kept) -> bool {
+    pub(super) fn is_mesh(&self, kept: &Kept) -> bool {
         let is_source = |wire: crate::scene::Wire| {
             matches!(self.scene.path(wire.to).last().name, "imsh" | "inputMesh" | "rsmh" | "restShapeMesh")
         };

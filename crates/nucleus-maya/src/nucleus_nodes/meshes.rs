@@ -8,13 +8,33 @@ use crate::omissions::Cause;
 use crate::scene::NodeId;
 
 use super::importer::Importer;
+use super::kept::Kept;
 use super::plan::Plan;
 
 impl Importer<'_> {
+    /// Refuses a mesh of the artist that no node takes.
+    ///
+    /// # Errors
+    /// With the names that there are.
+    pub(crate) fn check_given(&self) -> Result<(), String> {
+        let meshes: Vec<&Kept> = self.kept.all.iter().filter(|kept| self.is_mesh(kept)).collect();
+        let is_taken =
+            |name: &str| meshes.iter().any(|kept| self.mesh_names(kept.node, &kept.name).contains(&name));
+        match self.options.meshes.iter().find(|(name, _)| !is_taken(name)) {
+            None => Ok(()),
+            Some((name, _)) => Err(unknown_mesh(name, meshes.iter().map(|kept| kept.name.as_str()))),
+        }
+    }
+
+    /// The names by which an artist gives a mesh: that of our node, and that of the shape.
+    fn mesh_names<'a>(&'a self, id: NodeId, name: &'a str) -> [&'a str; 2] {
+        [name, self.scene.name(id)]
+    }
+
     /// Decides how a mesh is imported; `name` is that of our node.
     pub(super) fn plan(&self, id: NodeId, name: &str) -> Plan {
         let scene = self.scene;
-        let names = [name, scene.name(id)];
+        let names = self.mesh_names(id, name);
         if let Some((_, path)) = self.options.meshes.iter().find(|(given, _)| names.contains(&given.as_str()))
         {
             return match std::fs::read_to_string(path) {
@@ -167,4 +187,14 @@ impl Importer<'_> {
     pub(super) fn report_missing(&mut self, object: &str, why: &str) {
         self.omissions.add(object, Cause::Mesh(why.to_owned()));
     }
+}
+
+/// The message for a `--mesh` whose name nothing has.
+pub fn unknown_mesh<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
+    let hint = match known.is_empty() {
+        true => "no mesh is needed".to_owned(),
+        false => format!("there is {}", known.join(", ")),
+    };
+    format!("`--mesh {name}=...` names no mesh that is needed; {hint}")
 }

@@ -27,5 +27,6 @@ mod wiring;
 
 pub(crate) use importer::Importer;
 pub(crate) use kept::{MARK_AUTOMATIC, MARK_NAME, MARK_PAINT, OWN_FILE};
+pub use meshes::unknown_mesh;
 pub(crate) use options::BorrowedOptions;
 pub use options::{ImportOptions, WriteFile};
