@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use nucleus_graph::attributes::{n_cloth, n_particle, point_emitter, transform};
+use nucleus_graph::attributes::{n_cloth, n_particle, nucleus, point_emitter, transform};
 use nucleus_graph::scene::{read_scene_text, write_scene};
 use nucleus_maya::animation::Evaluator;
 use nucleus_maya::ascii::SourceText;
@@ -405,6 +405,16 @@ fn a_rest_shape_is_read_from_every_output_of_a_mesh() {
         assert!(read.imported.omissions.is_empty(), "{output}: {}", read.imported.omissions);
         assert_round_trip(&read);
     }
+}
+
+#[test]
+fn an_added_attribute_of_a_node_that_is_kept_drives_others() {
+    let control = "addAttr -sn \"wind\" -ln \"wind\" -at \"double\" \"sheet\"; setAttr \"sheet.wind\" 7;\n\
+                   connectAttr \"sheet.wind\" \"n.wisp\";\n";
+    let read = read(&format!("{}{control}", constrained_cloth(&[])));
+    let graph = &read.imported.scene.graph;
+    assert_eq!(graph.node(graph.find("n").unwrap()).get(&nucleus::WIND_SPEED), 7.0, "{}", read.text());
+    assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
 }
 
 #[test]

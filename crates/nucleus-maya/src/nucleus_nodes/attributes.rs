@@ -214,13 +214,13 @@ impl Importer<'_> {
         scene.assigned(from, ANY).filter(|set| names.contains(&set.segment.name)).collect()
     }
 
-    /// Whether a node that is carried over, too, drives an attribute: then a connection says so.
+    /// Whether a plug that is carried over, too, drives an attribute: then a connection says so.
     ///
     /// A cache that drives `playFromCache` is reported with its object.
     fn is_fed_by_kept(&self, from: NodeId, names: &[&str]) -> bool {
         let Some(wire) = self.scene.source(from, names, None) else { return false };
         let is_apart = matches!(self.scene.kind(wire.from.node), "time" | "cacheFile" | "cacheBlend");
-        is_apart || self.kept.by_node.contains_key(&wire.from.node)
+        is_apart || self.plug(wire.from).is_some()
     }
 
     fn vector(&mut self, from: NodeId, row: &'static Attribute) -> Option<Setting> {

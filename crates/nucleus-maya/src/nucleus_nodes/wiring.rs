@@ -94,8 +94,7 @@ impl Importer<'_> {
                 input.attribute.kind,
                 Kind::Bool | Kind::Int | Kind::Float | Kind::Choice(_) | Kind::Texture
             );
-        let is_sampled = is_number && !self.kept.by_node.contains_key(&wire.from.node);
-        is_cache || is_sampled || !matches!(input.attribute.effect, Effect::Solved(_))
+        is_cache || is_number || !matches!(input.attribute.effect, Effect::Solved(_))
     }
 
     fn report_unread(&mut self, wire: Wire, input: Plug) {
@@ -117,7 +116,7 @@ impl Importer<'_> {
     }
 
     /// Our plug for a plug of Maya's; `None` if its node or its attribute is not carried over.
-    fn plug(&self, plug: PlugRef) -> Option<Plug> {
+    pub(super) fn plug(&self, plug: PlugRef) -> Option<Plug> {
         let scene = self.scene;
         let node = match scene.kind(plug.node) {
             "time" => self.graph.clock(),
