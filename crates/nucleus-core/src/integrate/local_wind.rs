@@ -63,12 +63,16 @@ pub fn update_local_wind<R: Real>(
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
             let run = unsafe { added.run(rows.clone()) };
+            let first = cloth.points().start;
             for (row, added) in rows.zip(run) {
                 let moved = displacement[row as usize].xyz().map(R::to_f64);
                 let place = Vector3::from(anchor[row as usize]) + Vector3::from(moved);
                 let mut wind = frame.wind;
                 wind += gusts.as_ref().map_or(Vector3::zeros(), |gusts| gusts.at(place));
-                wind *= shadows.iter().map(|shadow| shadow.share(place, [at as u32, row])).product::<f64>();
+                wind *= shadows
+                    .iter()
+                    .map(|shadow| shadow.share(place, [at as u32, row - first]))
+                    .product::<f64>();
                 for push in pushes.iter().filter(|push| push.cloth != Some(at)) {
                     wind = push.blend(wind, place);
                 }

@@ -52,13 +52,13 @@ impl WindShadow {
         Self { surface, cloth, shadows_itself: settings.self_shadow, rays }
     }
 
-    /// The share of the wind that gets to a place, which is this row of this cloth; `place` in metres.
-    pub fn share(&self, place: Vector3<f64>, [cloth, row]: [u32; 2]) -> f64 {
+    /// The share of the wind that gets to a place in metres, which is a point of a cloth, counted from its first.
+    pub fn share(&self, place: Vector3<f64>, [cloth, point]: [u32; 2]) -> f64 {
         let is_own = self.cloth == Some(cloth as usize);
         if self.rays.is_empty() || is_own && !self.shadows_itself {
             return 1.0;
         }
-        let own = is_own.then_some(row);
+        let own = is_own.then_some(point);
         let through = |ray: &Vector3<f64>| self.surface.first_hit(place, *ray, own).map_or(1.0, |at| at * at);
         self.rays.iter().map(through).sum::<f64>() / self.rays.len() as f64
     }
