@@ -14,7 +14,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::input::frame::{FrameInput, Pressure};
+use crate::input::frame::Pressure;
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::state::State;
@@ -22,15 +22,9 @@ use crate::state::State;
 /// Share of the moment of inertia that is added about every axis: points in one line have none about it.
 const LEAST_INERTIA: f64 = 1e-9;
 
-/// Whether the sweeps of a cloth may have to lose their torque in a frame: where it can touch nothing, or is under pressure,
-/// whatever it touches. Without pressure the torque is small, and cloth that lies on the ground would creep by the rounding of
-/// what takes it away.
-pub fn may_keep_angular_momentum(frame: &FrameInput, cloth: usize) -> bool {
-    frame.cloths[cloth].pressure != Pressure::Off || !can_touch(frame, cloth)
-}
-
-/// Whether they do: where the cloth moves freely (`is_free`), or its pressure is that of closed chambers. The gas that an open
-/// chamber loses takes momentum with it.
+/// Whether the sweeps of a cloth have to lose their torque in a frame: where the cloth moves freely (`is_free`), or its pressure
+/// is that of closed chambers. The gas that an open chamber loses takes momentum with it, and cloth that lies on the ground
+/// would creep by the rounding of what takes the torque away.
 pub fn keeps_angular_momentum<R: Real>(cloth: &ClothModel<R>, pressure: &Pressure, is_free: bool) -> bool {
     let has_links = cloth.stretch.len() > 0; // particles have none
     has_links
@@ -38,15 +32,6 @@ pub fn keeps_angular_momentum<R: Real>(cloth: &ClothModel<R>, pressure: &Pressur
             Pressure::Off => is_free,
             pressure => cloth.pressure.is_closed(pressure),
         }
-}
-
-/// Whether a cloth collides with anything, near or far.
-fn can_touch(frame: &FrameInput, index: usize) -> bool {
-    let cloth = &frame.cloths[index];
-    let has_others = frame.plane.is_some()
-        || frame.cloths.len() > 1
-        || frame.colliders.iter().any(|collider| collider.collide);
-    cloth.self_collision.on || cloth.collide && has_others
 }
 
 /// Takes the torque of the sweeps of a time step of `h` seconds, and of the pressure before them, from a cloth that is not

@@ -11,7 +11,7 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::state::State;
 
-use super::angular_momentum::{keeps_angular_momentum, may_keep_angular_momentum, without_torque};
+use super::angular_momentum::{keeps_angular_momentum, without_torque};
 use super::row_loops::for_all_rows;
 use super::strength_map::StrengthGroup;
 use super::stretch::LinkGroup;
@@ -31,9 +31,8 @@ pub fn damp<R: Real>(
         if !cloth.damps || !damping.is_felt() {
             continue;
         }
-        let has_torque = damping.damp > 0.0
-            && may_keep_angular_momentum(frame, index)
-            && keeps_angular_momentum(cloth, &settings.pressure, is_free[index]);
+        let has_torque =
+            damping.damp > 0.0 && keeps_angular_momentum(cloth, &settings.pressure, is_free[index]);
         match has_torque {
             true => without_torque(cloth, state, |state| sweep(cloth, state, &damping, pool)),
             false => sweep(cloth, state, &damping, pool),

@@ -1,7 +1,6 @@
 //! Physical: resistances are stiffnesses, and a time step has one sweep of every effect (Macklin et al. 2019).
 
 use crate::constraints::angle::AngleStrength;
-use crate::constraints::angular_momentum::may_keep_angular_momentum;
 use crate::constraints::bend::BendStrength;
 use crate::constraints::shape::{DEFORM_RATE, RIGID_RATE, ShapeStrength};
 use crate::constraints::strength_map::Sides;
@@ -56,10 +55,16 @@ pub fn physical<R: Real>(
         }
     }
     let mut passes = vec![Pass::Constraints(0..sweeps.len())];
-    let is_swept = |cloth: &usize| sweeps.iter().any(|sweep| sweep.cloth == *cloth);
-    let cloths = (0..frame.cloths.len()).filter(|&cloth| may_keep_angular_momentum(frame, cloth));
-    passes.extend(cloths.filter(is_swept).map(Pass::AngularMomentum));
-    passes.extend((0..wholes.len()).map(Pass::Whole));
+    // What acts within a cloth comes before its torque is taken away, and what draws it to a mesh comes after.
+    let (within, from_outside): (Vec<usize>, Vec<usize>) =
+        (0..wholes.len()).partition(|&at| matches!(wholes[at].effect, WholeEffect::Shape(_)));
+    passes.extend(within.iter().copied().map(Pass::Whole));
+    let is_swept = |cloth: &usize| {
+        sweeps.iter().any(|sweep| sweep.cloth == *cloth)
+            || within.iter().any(|&at| wholes[at].cloth == *cloth)
+    };
+    passes.extend((0..frame.cloths.len()).filter(is_swept).map(Pass::AngularMomentum));
+    passes.extend(from_outside.into_iter().map(Pass::Whole));
     passes.extend([Pass::ClothContact, Pass::ColliderContact]);
     passes
 }

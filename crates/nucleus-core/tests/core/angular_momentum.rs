@@ -4,8 +4,8 @@ use crate::scenes::{LINKS, Vec3, frame, ground, physical, still};
 use crate::soft_bodies::{crate_of, icosphere};
 use nalgebra::Matrix3;
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, FrameInput, Mass, ModelBuilder, PointId, Pressure, Solver, Start,
-    StateView, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, Mass, ModelBuilder, PointId, Pressure,
+    SelfCollision, Solver, Start, StateView, Surface,
 };
 use proptest::prelude::*;
 
@@ -127,6 +127,23 @@ fn a_still_balloon_is_still_between_its_frames_too() {
     (0..96).for_each(|_| _ = solver.step(&input, &mut ()));
     let fastest = motion(&solver, 0..count).iter().map(|(_, _, v)| v.norm()).fold(0.0, f64::max);
     assert!(fastest < 1e-3, "{fastest} m/s"); // 0.85 where sweeps alternate, at the same points in each frame
+}
+
+#[test]
+fn a_rigid_body_under_its_own_stress_does_not_begin_to_spin() {
+    let lists = ClothLists { shape: true, self_collision: true, ..LINKS };
+    let surface = crate_of(0.3, 4);
+    let count = surface.positions.len();
+    let mut builder = ModelBuilder::new();
+    builder.cloth(Cloth::new(surface, Mass::PerArea(0.2), lists)).expect("a good mesh");
+    let mut solver = Solver::<f32>::new(builder, 1);
+    // It can touch itself, though it does not.
+    let self_collision = SelfCollision { on: true, thickness: 0.005, elements: Elements::Faces, edges: true };
+    let stressed = ClothFrame { rigidity: 5.0, rest_length_scale: 1.3, self_collision, ..still() };
+    let input = FrameInput { cloths: vec![stressed], ..inflated() };
+    (0..96).for_each(|_| _ = solver.step(&input, &mut ()));
+    let [_, turn] = spin(&motion(&solver, 0..count));
+    assert!(turn.norm() < 1e-3, "{turn} rad/s");
 }
 
 #[test]

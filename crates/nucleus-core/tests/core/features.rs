@@ -74,11 +74,9 @@ fn each_feature_adds_its_own_rows_and_no_others() {
         set(&mut frame);
         expected.retain(|(known, _)| *known != name);
         expected.push((name, rows));
-        // Links of cloth that can touch nothing keep its angular momentum.
+        // What holds a cloth together that flies freely keeps its angular momentum.
         expected.retain(|(known, _)| *known != "angular momentum");
-        if frame.plane.is_none() {
-            expected.push(("angular momentum", POINTS));
-        }
+        expected.push(("angular momentum", POINTS));
         let mut found = passes(lists, &frame);
         found.sort_unstable();
         expected.sort_unstable();
