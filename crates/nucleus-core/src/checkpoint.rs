@@ -398,7 +398,7 @@ checkpoint_struct!([R: Real] State<R> {
     values: [wind_travel],
     parts: [populations],
     rebuilt: [
-        start, depenetration_by_collider, depenetration_by_cloth, displaced, step_length, predicted, normal, corrections, area, added_wind,
+        start, depenetration_by_collider, depenetration_by_cloth, pushed_out, displaced, step_length, predicted, normal, corrections, area, added_wind,
         field, spins, inverse_mass
     ],
 });

@@ -33,7 +33,7 @@ use crate::contact::collider::start_gaps::record_start_gaps;
 use crate::contact::exclusion::update_pair_filter;
 use crate::contact::force_field::apply_force_fields;
 use crate::contact::point_field::apply_point_fields;
-use crate::contact::push_out::push_out;
+use crate::contact::push_out::{end_push_out, push_out};
 use crate::contact::restitution::apply_restitution;
 use crate::contact::safeguard::safeguard;
 use crate::contact::time_step::ContactCounters;
@@ -221,6 +221,7 @@ fn end_substep<R: CompiledReal>(
     counters: &mut ContactCounters,
 ) {
     let substep_length = schedule.h * f64::from(schedule.steps);
+    end_push_out(&mut solver.state);
     let end = f64::from(substep) / f64::from(schedule.substeps);
     turn_particles(solver, frame, [end, substep_length]);
     let has_lost_links = age_particles(solver, frame, schedule, substep, counters);

@@ -2,13 +2,16 @@
 //!
 //! It uses present positions only, for scenes that start with one object inside another. Points that it moves pass
 //! through surfaces; contact starts again from the new positions (Maya's `pushOut` and `pushOutRadius`).
+//!
+//! It is no motion: links that it stretches would throw the points that it has moved. At the end of the substep these have the
+//! velocity that they had at its start, but none into the surface.
 
 use nalgebra::Vector3;
 
 use crate::contact::placed_surface::{Nearest, PlacedSurface};
 use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, PushOut};
-use crate::math::Real;
+use crate::math::{Real, Row4, dot, scale, sub};
 use crate::model::{ClothModel, Model};
 use crate::state::State;
 
@@ -72,18 +75,24 @@ fn push_out_of<R: Real>(
     cloth: usize,
 ) {
     let thickness = surface.thickness + frame.cloths[cloth].thickness;
-    let mut is_moved = false;
+    let before = state.pushed_out.len();
     for row in model.points() {
         let mut moved = state.displacement[row as usize];
         let correction =
             surface.correction(Point::from(state.position(row)), thickness, surface.collides[cloth]);
-        let Some(correction) = correction.filter(|_| moved.0[3] > R::ZERO) else { continue };
+        let Some((correction, normal)) = correction.filter(|_| moved.0[3] > R::ZERO) else { continue };
         (0..3).for_each(|axis| moved.0[axis] += R::from_f64(correction[axis]));
         state.displacement[row as usize] = moved;
-        is_moved = true;
+        let velocity = state.velocity[row as usize];
+        let inward = dot(velocity.xyz(), normal.map(R::from_f64));
+        let kept = sub(
+            velocity.xyz(),
+            scale(normal.map(R::from_f64), if inward < R::ZERO { inward } else { R::ZERO }),
+        );
+        state.pushed_out.push((row, kept));
         contact.invalidate_bounds(row as usize);
     }
-    if is_moved {
+    if state.pushed_out.len() > before {
         contact.active_windows[cloth] = [0.0; 2];
         if let Some(cloth_contacts) = &mut contact.cloth_contacts {
             cloth_contacts.untangling.is_search_due[cloth] = true;
@@ -104,14 +113,22 @@ impl PushOutSurface {
     }
 
     /// The correction of a point in this substep, if it is within the radius and closer to the surface than
-    /// `thickness`, or behind it. `collides` says whether contact keeps points at that distance too.
-    fn correction(&self, place: Point, thickness: f64, collides: bool) -> Option<Point> {
+    /// `thickness`, or behind it; and the normal there. `collides` says whether contact keeps points at that distance too.
+    fn correction(&self, place: Point, thickness: f64, collides: bool) -> Option<(Point, [f64; 3])> {
         let Nearest { distance, point, normal, .. } = self.surface.nearest(place, self.radius)?;
         let height = normal.dot(&(place - point));
         let is_clear = height >= 0.0 && distance >= thickness;
         let reached = height + (thickness - height) * self.share;
         // Within the thickness contact would hold it on the far side.
         let share = if collides && reached > -thickness { 1.0 } else { self.share };
-        (!is_clear).then(|| (point + normal * thickness - place) * share)
+        (!is_clear).then(|| ((point + normal * thickness - place) * share, normal.into()))
+    }
+}
+
+/// Gives the points that were moved in a substep their velocities back.
+pub fn end_push_out<R: Real>(state: &mut State<R>) {
+    for (row, [x, y, z]) in state.pushed_out.drain(..) {
+        let velocity = &mut state.velocity[row as usize];
+        *velocity = Row4([x, y, z, velocity.0[3]]);
     }
 }

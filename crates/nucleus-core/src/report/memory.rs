@@ -24,6 +24,7 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         start,
         depenetration_by_collider,
         depenetration_by_cloth,
+        pushed_out,
         displaced,
         step_length: _,
         predicted,
@@ -52,7 +53,8 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         field,
     ];
     let rows: usize = rows.into_iter().map(|column| size_of_val(&column[..])).sum();
-    let chambers = size_of_val(&chambers[..]) + size_of_val(&rotations[..]) + size_of_val(&displaced[..]);
+    let chambers = size_of_val(&chambers[..]) + size_of_val(&rotations[..]);
+    let chambers = chambers + size_of_val(&displaced[..]) + size_of_val(&pushed_out[..]);
     let spins = size_of_val(&spins[..]);
     let populations: usize = populations.iter().map(Population::bytes).sum();
     rows + size_of_val(&anchor[..])

@@ -35,6 +35,8 @@ pub struct State<R> {
     /// collider takes back does become velocity, because cloth between the two carries the load. Empty where no contact
     /// is possible.
     pub depenetration_by_cloth: Vec<Row4<R>>,
+    /// Points that `pushOut` has moved in the substep, and their velocities in m/s.
+    pub pushed_out: Vec<(u32, [R; 3])>,
     /// Free points that contact has displaced without velocity in the time step, in order, and their motion in m/s.
     pub displaced: Vec<(u32, [R; 3])>,
     /// Length of the last time step in seconds.

@@ -273,6 +273,28 @@ fn push_out_by_a_small_share_passes_a_surface_that_holds_points_on_its_far_side(
 }
 
 #[test]
+fn a_sheet_that_is_pushed_out_of_a_ball_is_not_thrown() {
+    for share in [0.3, 1.0] {
+        let mut sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);
+        sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.2, 0.3, -0.2));
+        let cloth = Cloth::new(sheet, Mass::PerArea(0.2), LINKS);
+        let mut solver = solver(vec![cloth], vec![crate::scenes::sphere(0.5, Vec3::zeros())]);
+        let push_out = PushOut { share, radius: 1.0 };
+        let ball =
+            ColliderFrame { collide: true, push_out, thickness: THICKNESS, ..ColliderFrame::default() };
+        let sheet = ClothFrame { thickness: THICKNESS, ..still() };
+        let input = FrameInput { colliders: vec![ball], ..weightless(vec![sheet]) };
+        (0..12).for_each(|_| _ = solver.step(&input, &mut ()));
+        assert!((0..81).all(|point| solver.point(FIRST, point).norm() > 0.45), "it is outside");
+        let mut velocities = Vec::new();
+        solver.velocities(FIRST, 1.0, &mut velocities);
+        let mean = velocities.iter().map(|v| Vec3::from(v.map(f64::from))).sum::<Vec3>() / 81.0;
+        // The links that the ball has stretched spring back.
+        assert!(mean.norm() < 1.0, "{share}: {} m/s", mean.norm());
+    }
+}
+
+#[test]
 fn cloth_pushes_points_of_other_cloth_out_and_none_of_its_own() {
     let sheet = grid(9, 9, Vec3::x(), Vec3::z());
     let bead = moving(beads(vec![Vec3::new(0.51, -0.03, 0.52)]), 0.1, Vec3::zeros());
