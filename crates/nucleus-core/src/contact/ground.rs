@@ -312,8 +312,9 @@ impl<R: Real> GroundContact<'_, R> {
             let motion = sub(sub(row.xyz(), start), self.plane.travel);
             let along = sub(motion, scale(normal, dot(normal, motion)));
             let [before, now] = gaps.map(|gap| scale(normal, gap));
-            let correction =
-                adhesion.correction(before, add(now, along), normal, self.h).unwrap_or([R::ZERO; 3]);
+            let Some(correction) = adhesion.correction(before, add(now, along), normal, self.h) else {
+                continue;
+            };
             (0..3).for_each(|axis| row.0[axis] += correction[axis]);
             self.writer.push_by_collider(point, row, [R::ZERO; 3]);
         }

@@ -5,10 +5,10 @@
 //!    of its thickness that fits.
 //! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little room for
 //!    all of it.
-//! 3. Motion is truncated at a division plane between the two elements, or, at a collider or the ground, reverted to the
-//!    start of the step in its moving frame (planar divide and truncate).
-//! 4. The points of the pair freeze: they keep the positions of the start of the step, or move with a collider, a pin
-//!    or a point that these carry.
+//! 3. Motion is truncated at a division plane between the two elements, which moves with their island, or, at a collider or the
+//!    ground, reverted to the start of the step in its moving frame (planar divide and truncate).
+//! 4. The points of the pair freeze: they move with the mean motion of their island, or with a collider, a pin or a point that
+//!    these carry.
 //! 5. The pair is accepted as unresolved, and counted.
 //!
 //! Only islands of cloths with a failed certificate push again; of free points that touch no cloth, only those that failed.
@@ -21,6 +21,7 @@ use std::sync::atomic::Ordering;
 use crate::contact::cloth::broad_phase::update_cloth_candidates;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::frozen::Frozen;
+use crate::contact::cloth::islands::{find_drift, grow_to_islands, keep_momentum};
 use crate::contact::cloth::pass::resolve_cloth_contacts;
 use crate::contact::collider::affine_motion::AffineMotion;
 use crate::contact::collider::facing::find_room;
@@ -39,6 +40,10 @@ use crate::output::{Stage, StepObserver};
 pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
     certify_or_fall_back(pass, watch);
     pass.contact.material_maps.room.clear();
+    if !pass.contact.drift.is_empty() {
+        keep_momentum(pass);
+        pass.contact.drift.clear();
+    }
 }
 
 fn certify_or_fall_back<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
@@ -80,6 +85,9 @@ fn certify_or_fall_back<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn 
             pass.contact.contact_mask.clear();
         } else if attempt < TRUNCATING_ENDS {
             pass.contact.carriers.clear();
+            if attempt == PUSHING_ENDS {
+                find_drift(pass);
+            }
             truncate(pass);
             revert_collider_contacts(pass);
         } else if !is_last {
@@ -110,16 +118,8 @@ fn mask_islands<R: Real>(contact: &mut ContactSystem<R>, is_unproven: impl Fn([b
     let marks = among_cloths.iter().zip(&*with_colliders);
     contact_mask
         .extend(marks.map(|marks| is_unproven([marks.0, marks.1].map(|mark| mark.load(Ordering::Relaxed)))));
-    let Some(ClothContacts { cache, materials, .. }) = cloth_contacts else { return };
-    let mut has_grown = true;
-    while has_grown {
-        has_grown = false;
-        for [a, b] in cache.cloth_pairs(materials.len()) {
-            if contact_mask[a] != contact_mask[b] {
-                (contact_mask[a], contact_mask[b]) = (true, true);
-                has_grown = true;
-            }
-        }
+    if let Some(ClothContacts { cache, .. }) = cloth_contacts {
+        grow_to_islands(cache, contact_mask);
     }
 }
 

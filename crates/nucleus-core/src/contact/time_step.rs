@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::contact::collider::ColliderState;
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
-use crate::math::{Real, Row4, add};
+use crate::math::{Real, Row4, add, sub, unit};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::state::State;
 
@@ -52,6 +52,9 @@ pub struct PositionWriter<'a, R> {
     displacement: DisjointSlice<'a, Row4<R>>,
     by_collider: DisjointSlice<'a, Row4<R>>,
     by_cloth: DisjointSlice<'a, Row4<R>>,
+    /// What bears each point, in this step and in the last; empty where nobody asks.
+    support: DisjointSlice<'a, Row4<R>>,
+    support_before: &'a [Row4<R>],
     predicted: &'a [Row4<R>],
     /// The row of the first entry of all columns but the displacements.
     first: u32,
@@ -67,6 +70,8 @@ impl<'a, R: Real> PositionWriter<'a, R> {
             predicted,
             depenetration_by_collider,
             depenetration_by_cloth,
+            support,
+            support_before,
             start,
             anchor,
             ..
@@ -74,7 +79,10 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         let [displacement, by_collider, by_cloth] =
             [displacement, depenetration_by_collider, depenetration_by_cloth]
                 .map(|column| DisjointSlice::new(column));
-        (Self { displacement, by_collider, by_cloth, predicted, first: 0 }, start, anchor)
+        let support = DisjointSlice::new(support);
+        let writer =
+            Self { displacement, by_collider, by_cloth, support, support_before, predicted, first: 0 };
+        (writer, start, anchor)
     }
 
     /// The columns of a run of points from the row `first` on, of which a task keeps all but the displacements. The second
@@ -86,7 +94,8 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         first: u32,
     ) -> Self {
         let [by_collider, by_cloth] = [by_collider, by_cloth].map(DisjointSlice::new);
-        Self { displacement, by_collider, by_cloth, predicted, first }
+        let (support, support_before) = (DisjointSlice::new(&mut []), &[][..]);
+        Self { displacement, by_collider, by_cloth, support, support_before, predicted, first }
     }
 
     /// The place of a point in all columns but the displacements.
@@ -98,9 +107,8 @@ impl<'a, R: Real> PositionWriter<'a, R> {
     /// The displacement of a point without constraints and contacts, but with its depenetration.
     #[inline(always)]
     pub fn predicted(&self, point: u32) -> [R; 3] {
-        // SAFETY: as below.
-        let by_cloth = unsafe { self.by_cloth.get(point - self.first) }.xyz();
-        add(self.predicted[self.place_of(point)].xyz(), add(self.collider_depenetration(point), by_cloth))
+        let [by_collider, by_cloth] = [self.collider_depenetration(point), self.cloth_depenetration(point)];
+        add(self.predicted[self.place_of(point)].xyz(), add(by_collider, by_cloth))
     }
 
     /// How far constraints and contacts have moved a point that touches no cloth, without its depenetration, in metres.
@@ -125,15 +133,40 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         unsafe { self.by_collider.get(point - self.first) }.xyz()
     }
 
+    /// How far cloth has depenetrated a point in this step, in metres.
+    #[inline(always)]
+    pub fn cloth_depenetration(&self, point: u32) -> [R; 3] {
+        // SAFETY: as above.
+        unsafe { self.by_cloth.get(point - self.first) }.xyz()
+    }
+
     /// Moves a point off a collider; `depenetration` is the part of the push without velocity.
     #[inline(always)]
     pub fn push_by_collider(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
         let [x, y, z] = add(self.collider_depenetration(point), depenetration);
         // SAFETY: as above.
         unsafe {
+            if !self.support_before.is_empty()
+                && let Some(direction) = unit(sub(row.xyz(), self.displacement.get(point).xyz()), R::ZERO)
+            {
+                self.bear(point, direction);
+            }
             self.displacement.set(point, row);
             self.by_collider.set(point - self.first, Row4([x, y, z, R::ZERO]));
         }
+    }
+
+    /// Notes that a point is borne in a direction of unit length.
+    #[inline(always)]
+    pub fn bear(&self, point: u32, [x, y, z]: [R; 3]) {
+        // SAFETY: as above.
+        unsafe { self.support.set(point, Row4([x, y, z, R::ZERO])) };
+    }
+
+    /// The direction in which a point was borne in the last step; zero where it was not.
+    #[inline(always)]
+    pub fn support(&self, point: u32) -> [R; 3] {
+        self.support_before.get(point as usize).map_or([R::ZERO; 3], |row| row.xyz())
     }
 
     /// Moves a point off another movable point. `depenetration` is the part of the push without velocity, but
@@ -146,6 +179,18 @@ impl<'a, R: Real> PositionWriter<'a, R> {
             (0..3).for_each(|axis| by_cloth.0[axis] += depenetration[axis]);
             self.displacement.set(point, row);
             self.by_cloth.set(point - self.first, by_cloth);
+        }
+    }
+
+    /// Sets a point's displacement to one that has a share of its motion, and so of its depenetration.
+    #[inline(always)]
+    pub fn truncate(&self, point: u32, row: Row4<R>, share: R) {
+        let scaled = |row: Row4<R>| Row4(row.0.map(|x| x * share));
+        // SAFETY: as above.
+        unsafe {
+            self.displacement.set(point, row);
+            self.by_collider.set(point - self.first, scaled(self.by_collider.get(point - self.first)));
+            self.by_cloth.set(point - self.first, scaled(self.by_cloth.get(point - self.first)));
         }
     }
 

@@ -24,6 +24,8 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         start,
         depenetration_by_collider,
         depenetration_by_cloth,
+        support,
+        support_before,
         pushed_out,
         displaced,
         step_length: _,
@@ -46,6 +48,8 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         start,
         depenetration_by_collider,
         depenetration_by_cloth,
+        support,
+        support_before,
         predicted,
         corrections,
         area,
@@ -53,8 +57,10 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         field,
     ];
     let rows: usize = rows.into_iter().map(|column| size_of_val(&column[..])).sum();
-    let chambers = size_of_val(&chambers[..]) + size_of_val(&rotations[..]);
-    let chambers = chambers + size_of_val(&displaced[..]) + size_of_val(&pushed_out[..]);
+    let chambers = size_of_val(&chambers[..])
+        + size_of_val(&rotations[..])
+        + size_of_val(&displaced[..])
+        + size_of_val(&pushed_out[..]);
     let spins = size_of_val(&spins[..]);
     let populations: usize = populations.iter().map(Population::bytes).sum();
     rows + size_of_val(&anchor[..])

@@ -3,7 +3,7 @@
 use crate::contact::ccd::{Separation, separated_throughout};
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::narrow_phase::{ElementPositions, shortest_line};
-use crate::math::{Real, dot, max, sub};
+use crate::math::{Real, add, dot, max, sub};
 
 /// Share of the distance to a division plane that a point may move: the rest is the gap at the start of the next
 /// step.
@@ -70,9 +70,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
 
     /// Planar divide and truncate: places a plane between the two elements at a share by approach speed, and
     /// scales back the motion of each point that would cross it. Both sides then stay on theirs, even if other
-    /// contacts scale their points back farther.
+    /// contacts scale their points back farther. The plane moves with the island of the two, so that it is not braked.
     pub fn truncate(&mut self, step: &ClothStep<'_, R>) {
-        let (before, now) = (self.start_positions(step), self.end_positions(step));
+        let drift = self.drift(step);
+        let before = self.start_positions(step);
+        let now = self.positions(step.origins, |point| sub(step.row(point).xyz(), drift));
         let (normal, _, _) = shortest_line(before);
         self.normal = normal;
         let most = |x: R, y: R| if y > x { y } else { x };
@@ -108,11 +110,12 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             return;
         }
         let share = max((before - room) / (before - now), R::ZERO);
-        let start = step.start(point);
+        let start = add(step.start(point), self.drift(step));
         for axis in 0..3 {
             row.0[axis] = start[axis] + (row.0[axis] - start[axis]) * share;
         }
-        step.writer.place(point, row);
+        // What moved it without velocity before does not become velocity.
+        step.writer.truncate(point, row, share);
     }
 }
 

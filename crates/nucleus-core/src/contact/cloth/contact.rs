@@ -37,6 +37,10 @@ pub struct ClothStep<'a, R> {
     pub h: R,
     /// Factor on every thickness: below one where there is too little room.
     pub thickness_scale: R,
+    /// The cloths in whose contacts what is borne does not move; none where it is empty.
+    pub has_shock: &'a [bool],
+    /// By cloth: the mean motion of its island in the step, in metres, to which motion is truncated; zero where it is empty.
+    pub drift: &'a [[R; 3]],
 }
 
 /// The reference of friction anchors.
@@ -82,6 +86,8 @@ impl<'a, R: Real> ClothStep<'a, R> {
             material_maps,
             h,
             thickness_scale,
+            has_shock: &[],
+            drift: &[],
         }
     }
 }
@@ -239,6 +245,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     #[inline(always)]
     pub(super) fn is_resolved(&self, step: &ClothStep<'_, R>) -> bool {
         step.mask.is_empty() || step.resolves(self.params.kind.material())
+    }
+
+    /// The mean motion of its island in the step, in metres.
+    pub(super) fn drift(&self, step: &ClothStep<'_, R>) -> [R; 3] {
+        step.drift.get(self.cloths(step.materials.len())[0]).copied().unwrap_or([R::ZERO; 3])
     }
 
     /// The cloths of its two sides, given the number of materials.

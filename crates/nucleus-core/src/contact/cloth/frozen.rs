@@ -1,4 +1,4 @@
-//! The last fallback of the safeguard: points that keep the positions of the start of a time step, or are carried.
+//! The last fallback of the safeguard: points that move by one translation in a time step, or are carried.
 //!
 //! A pair whose points have one motion passes no part of itself. Around a collider that turns, no two places have the same
 //! motion; but its points move by an affine map, and an affine map of space passes nothing through anything. All that it
@@ -17,7 +17,7 @@ pub enum Frozen {
     /// Not at all.
     #[default]
     Free,
-    /// At the start of the step.
+    /// Where it was at the start of the step, moved by the mean motion of its island.
     AtStart,
     /// With a pin, the ground, a face of a collider that deforms, or a point that these carry.
     Carried,
@@ -26,7 +26,7 @@ pub enum Frozen {
 }
 
 impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
-    /// Returns all points of the two to the start of the step, or moves all with what carries one of them. `carriers` are the
+    /// Gives all points of the two the mean motion of their island, or moves all with what carries one of them. `carriers` are the
     /// motions of the colliders.
     pub fn freeze(
         &mut self,
@@ -38,7 +38,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let held = |point: u32| frozen[point as usize];
         let with = points().map(held).find(|frozen| matches!(frozen, Frozen::With(_)));
         let carried = points().find(|&point| held(point) == Frozen::Carried);
-        let motion = carried.map_or([R::ZERO; 3], |point| sub(step.row(point).xyz(), step.start(point)));
+        let motion = carried.map_or(self.drift(step), |point| sub(step.row(point).xyz(), step.start(point)));
         let of_others = if carried.is_some() { Frozen::Carried } else { Frozen::AtStart };
         let state = with.unwrap_or(of_others);
         for point in points() {

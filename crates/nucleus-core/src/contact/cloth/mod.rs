@@ -14,8 +14,10 @@
 //! | one contact | [`contact`] |
 //! | a fast lower bound on its gap | [`local_anchors`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
+//! | a heavy cloth on a light one | [`shock`] |
 //! | its certificate, and truncation at a division plane | [`certify`] |
 //! | points that are frozen, or carried | [`frozen`] |
+//! | islands of cloths, and the mean motion of each | [`islands`] |
 //! | intersecting meshes: detection, and untangling | [`intersections`], [`untangling`] |
 //! | the passes of a time step | [`pass`] |
 
@@ -32,6 +34,7 @@ pub mod found_contacts;
 pub mod frozen;
 mod group_bounds;
 pub mod intersections;
+pub mod islands;
 pub mod local_anchors;
 mod local_origins;
 pub mod motion_bounds;
@@ -42,5 +45,6 @@ pub mod pass;
 mod query;
 pub mod response;
 mod search;
+pub mod shock;
 mod swept_points;
 pub mod untangling;

@@ -141,7 +141,10 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         moved: [R; 3],
         depenetration: [R; 3],
     ) {
-        let (ours, theirs) = self.inverse_masses(step, material);
+        let (mut ours, mut theirs) = self.inverse_masses(step, material);
+        if !step.has_shock.is_empty() {
+            (ours, theirs) = self.on_borne_side(step, (ours, theirs), &(*b, *c));
+        }
         let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
         if all <= R::MIN_DENOMINATOR {
             return;

@@ -1,0 +1,103 @@
+//! Islands of cloths that are near each other, and the mean motion of each in a time step.
+//!
+//! What one island needs changes no bit of another.
+
+use crate::contact::cloth::cache::ContactCache;
+use crate::contact::cloth::contacts::ClothContacts;
+use crate::contact::material::ContactMaterial;
+use crate::contact::system::ContactPass;
+use crate::math::{Real, Row4, add, sub};
+use crate::union_find::UnionFind;
+
+/// Grows a mask of cloths until it holds whole islands.
+pub fn grow_to_islands<R: Real>(cache: &ContactCache<R>, mask: &mut [bool]) {
+    let mut has_grown = true;
+    while has_grown {
+        has_grown = false;
+        for [a, b] in cache.cloth_pairs(mask.len() * mask.len()) {
+            if mask[a] != mask[b] {
+                (mask[a], mask[b]) = (true, true);
+                has_grown = true;
+            }
+        }
+    }
+}
+
+/// Finds the mean motion of each island, by mass: the safeguard truncates motion relative to it, and freezes points in it.
+/// Relative to space, it would brake cloth in flight. An island with a pinned point is at rest.
+pub fn find_drift<R: Real>(pass: &mut ContactPass<'_, R>) {
+    let mut drift = std::mem::take(&mut pass.contact.drift);
+    mean_motions(pass, &mut drift);
+    pass.contact.drift = drift;
+}
+
+/// Gives islands that touch neither a collider nor the ground the momentum back that truncation has taken from them or given to
+/// them. It changes velocities and no position.
+pub fn keep_momentum<R: Real>(pass: &mut ContactPass<'_, R>) {
+    let mut means = Vec::new();
+    mean_motions(pass, &mut means);
+    let mut islands = islands(pass);
+    let mut is_alone = vec![true; means.len()];
+    for cloth in 0..means.len() {
+        is_alone[islands.find(cloth as u32) as usize] &= !is_near_obstacle(pass, cloth);
+    }
+    let ContactPass { model, state, contact, .. } = pass;
+    for (cloth, mean) in
+        means.into_iter().enumerate().filter(|&(cloth, _)| is_alone[islands.find(cloth as u32) as usize])
+    {
+        let lost = sub(contact.drift[cloth], mean);
+        for row in model.cloths[cloth].points().map(|row| row as usize) {
+            let [x, y, z] = sub(state.depenetration_by_cloth[row].xyz(), lost);
+            state.depenetration_by_cloth[row] = Row4([x, y, z, R::ZERO]);
+        }
+    }
+}
+
+/// Whether a cloth may touch a collider or the ground in this time step.
+fn is_near_obstacle<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
+    let ContactPass { model, state, contact, .. } = pass;
+    let lists = &contact.collider_contacts[contact.lists_of(cloth)];
+    let is_low = |material: &ContactMaterial<R>| {
+        let mut heights =
+            model.cloths[cloth].points().filter_map(|row| contact.ground.height(state.position(row)));
+        heights.any(|height| height < 2.0 * material.thickness)
+    };
+    lists.iter().any(|list| list.len() > 0 || !list.depenetration.points.is_empty())
+        || contact.ground_materials[cloth].as_ref().is_some_and(is_low)
+}
+
+fn islands<R: Real>(pass: &ContactPass<'_, R>) -> UnionFind {
+    let cloths = pass.model.cloths.len();
+    let mut islands = UnionFind::new(cloths);
+    if let Some(ClothContacts { cache, materials, .. }) = &pass.contact.cloth_contacts {
+        cache.cloth_pairs(materials.len()).for_each(|[a, b]| islands.union(a as u32, b as u32));
+    }
+    islands
+}
+
+/// Replaces `means` by the mean motion in the time step of each cloth's island, in metres, without depenetration.
+fn mean_motions<R: Real>(pass: &ContactPass<'_, R>, means: &mut Vec<[R; 3]>) {
+    let ContactPass { model, state, .. } = pass;
+    let mut islands = islands(pass);
+    // Mass, and its motion; infinite where a point is pinned.
+    let mut sums = vec![[0.0f64; 4]; model.cloths.len()];
+    for (index, cloth) in model.cloths.iter().enumerate() {
+        let sum = &mut sums[islands.find(index as u32) as usize];
+        for row in cloth.points().map(|row| row as usize) {
+            let mass = 1.0 / state.displacement[row].0[3].to_f64();
+            let without_velocity =
+                [&state.start, &state.depenetration_by_collider, &state.depenetration_by_cloth];
+            let without_velocity =
+                without_velocity.map(|column| column[row].xyz()).into_iter().fold([R::ZERO; 3], add);
+            let moved = sub(state.displacement[row].xyz(), without_velocity).map(R::to_f64);
+            (0..3).for_each(|axis| sum[axis] += mass * moved[axis]);
+            sum[3] += mass;
+        }
+    }
+    means.clear();
+    means.extend((0..model.cloths.len()).map(|cloth| {
+        let [x, y, z, mass] = sums[islands.find(cloth as u32) as usize];
+        let has_mean = mass.is_finite() && mass > 0.0;
+        [x, y, z].map(|moved| R::from_f64(if has_mean { moved / mass } else { 0.0 }))
+    }));
+}
