@@ -91,7 +91,7 @@ impl Compiler<'_> {
 impl EvaluationInterval<'_> {
     /// The pins of this interval. A constraint that becomes enabled attaches its points where they are at the start of
     /// the interval: `position` in metres (N2.4-5).
-    pub(super) fn pins(
+    pub(crate) fn pins(
         &self,
         attachments: &mut AttachmentState,
         position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,

@@ -1,7 +1,7 @@
 //! One nucleus during a run: its solver, the state of its constraints, and the time it has reached.
 
 use nalgebra::Vector3;
-use nucleus_core::{Encode, Reader, Real, RestoreError, Solver};
+use nucleus_core::{Encode, PointId, Reader, Real, RestoreError, Solver, StateView};
 
 use crate::attributes::nucleus;
 use crate::compile::{AttachmentState, EmitterState, NucleusProgram, Program};
@@ -64,6 +64,9 @@ impl<R: Real> NucleusRun<R> {
         let advances = elapsed > 0.0 && elapsed <= max_jump * (1.0 + 1e-9) && now > start;
         if !advances || !moment.get(id, &nucleus::ENABLE) {
             self.was_skipped = true;
+            if now > start {
+                self.hold(program, index, [from, frame], elapsed);
+            }
             return None;
         }
         let resets = self.was_skipped && now - elapsed <= start;
@@ -76,6 +79,14 @@ impl<R: Real> NucleusRun<R> {
             is_new_time: false,
             resets,
         })
+    }
+
+    /// Lets constraints that become enabled in an interval which is not solved take hold of their points, so that they carry
+    /// them by all of their motion once it goes on.
+    fn hold(&mut self, program: &Program, index: usize, frames: [f64; 2], elapsed: f64) {
+        let Self { solver, attachments, .. } = self;
+        let position = |cloth, point: PointId| solver.point(cloth, point.index());
+        program.interval(index, frames, elapsed, false).pins(attachments, &position);
     }
 
     /// Appends the state to a checkpoint.

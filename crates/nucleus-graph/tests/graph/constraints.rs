@@ -197,6 +197,41 @@ fn links_take_the_distance_of_the_frame_on_which_they_are_switched_on() {
 }
 
 #[test]
+fn a_sheet_that_tears_in_flight_is_not_braked() {
+    let text = r#""n": nucleus(gravity: 0, airDensity: 0),
+        "p": polyPlane(subdivisions: (10, 10)),
+        "c": nCloth(inputMesh: "p", thickness: 0.01, localForce: keys([(1, (0, 3, 0), stepped), (4, (0, 0, 0), stepped)])),
+        "t": dynamicConstraint(constraintType: tearableSurface, components: ["c"], glueStrength: 0.1)"#;
+    let program = program(&of_nodes(text, ""));
+    let height = |frame: usize| {
+        let points = places(&program, frame, "c");
+        points.iter().map(|p| f64::from(p[1])).sum::<f64>() / points.len() as f64
+    };
+    // The force ends after the third frame.
+    let [first, last] = [[4, 5], [10, 11]].map(|[from, to]| height(to) - height(from));
+    assert!(first > 1.0 && (last / first - 1.0).abs() < 0.01, "{last} m a frame, not {first}");
+}
+
+#[test]
+fn pins_follow_all_motion_of_their_constraint_though_the_solver_is_switched_on_late() {
+    let nodes = |enable: &str| {
+        format!(
+            r#""n": nucleus(gravity: 0, enable: {enable}), "p": polyPlane(), "c": nCloth(inputMesh: "p"),
+            "pin": dynamicConstraint(components: ["c.vtx[0]"], tx: keys([(1, 0), (5, 3), (9, 4)]))"#
+        )
+    };
+    let way = |enable: &str| {
+        let program = program(&of_nodes(&nodes(enable), ""));
+        places(&program, 12, "c")[0][0] - places(&program, 0, "c")[0][0]
+    };
+    for enable in
+        ["true", "keys([(1, false), (5, true)])", "keys([(1, true, stepped), (3, false), (5, true)])"]
+    {
+        assert!((way(enable) - 4.0).abs() < 1e-4, "{enable}: {}", way(enable));
+    }
+}
+
+#[test]
 fn a_constraint_that_is_off_or_excludes_nothing_costs_nothing() {
     let passes = |constraint: &str| {
         let text = of_nodes(&format!("{PAIR}{constraint}"), "");
