@@ -57,3 +57,16 @@ def test_a_scene_from_a_dict_is_the_scene_from_text(folder):
     for _ in range(3):
         ours.step(), theirs.step()
     assert np.array_equal(ours.positions("cloth1"), theirs.positions("cloth1"))
+
+
+def test_a_scene_from_a_dict_has_its_connections():
+    scene = nucleus.Scene.from_dict({
+        "nodes": {
+            "nucleus1": {"type": "nucleus"},
+            "sheet": {"type": "polyPlane"},
+            "lift": {"type": "transform", "translateY": 0.25},
+            "cloth1": {"type": "nCloth", "inputMesh": "sheet"},
+        },
+        "connections": [("lift.translateY", "cloth1.friction")],
+    })
+    assert scene["cloth1"]["friction"] == 0.25

@@ -174,9 +174,10 @@ class Node:
 
 def _text_of(scene: Mapping[str, Any]) -> str:
     """The text of a scene that is a dict."""
-    unknown = set(scene) - {"time", "record", "nodes", "checks"}
+    unknown = set(scene) - {"time", "record", "nodes", "connections", "checks"}
     if unknown:
-        raise ValueError(f"a scene has no {', '.join(sorted(unknown))}; it has time, record, nodes and checks")
+        known = "time, record, nodes, connections and checks"
+        raise ValueError(f"a scene has no {', '.join(sorted(unknown))}; it has {known}")
     time = ", ".join(f"{key}: {ron(value)}" for key, value in scene.get("time", {"start": 1, "end": 24, "fps": 24}).items())
     lines = ["Scene(", f"    time: ({time}),"]
     if "record" in scene:
@@ -190,6 +191,9 @@ def _text_of(scene: Mapping[str, Any]) -> str:
         fields = ", ".join(f"{key}: {ron(value, _nucleus.takes_word(kind, key))}" for key, value in settings)
         lines.append(f"        {ron(name)}: {kind}({fields}),")
     lines.append("    },")
+    if "connections" in scene:
+        pairs = (f"({ron(output)}, {ron(to)})" for output, to in scene["connections"])
+        lines.append(f"    connections: [{', '.join(pairs)}],")
     if "checks" in scene:
         lines.append(f"    checks: [{', '.join(map(str, scene['checks']))}],")
     return "\n".join([*lines, ")", ""])
