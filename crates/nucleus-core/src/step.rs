@@ -27,7 +27,7 @@ use crate::constraints::whole;
 use crate::contact::cloth::pass::{
     apply_cloth_adhesion, balance_joined_cloths, begin_cloth_contact, resolve_cloth_contacts,
 };
-use crate::contact::cloth::shock::{bear_rigid_bodies, has_shock};
+use crate::contact::cloth::shock::has_shock;
 use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
 use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
 use crate::contact::collider::start_gaps::record_start_gaps;
@@ -253,7 +253,6 @@ fn solve_time_step<R: CompiledReal>(
         || solver.contact.cloth_contacts.is_some();
     let can_touch = is_touchable && solver.contact.is_free.contains(&false);
     solver.state.store_step_start(schedule.h, can_touch, solver.contact.has_shock, &solver.pool);
-    bear_rigid_bodies(&solver.model, &mut solver.state, frame);
     whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
     let Solver { model, state, contact, links, liquids, pool, .. } = solver;
     for (cloth, liquid) in liquids.iter_mut().enumerate() {

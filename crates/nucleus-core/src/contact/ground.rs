@@ -348,6 +348,9 @@ impl<R: Real> GroundContact<'_, R> {
         let moved = add(scale(normal, push.length()), friction_part);
         (0..3).for_each(|axis| row.0[axis] += moved[axis]);
         self.writer.push_by_collider(point, row, add(scale(normal, push.depenetration), given_back));
+        if self.writer.notes_support() {
+            self.writer.bear(point, normal, friction);
+        }
     }
 }
 

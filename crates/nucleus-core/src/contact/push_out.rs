@@ -3,8 +3,8 @@
 //! It uses present positions only, for scenes that start with one object inside another. Points that it moves pass
 //! through surfaces; contact starts again from the new positions (Maya's `pushOut` and `pushOutRadius`).
 //!
-//! It is no motion: links that it stretches would throw the points that it has moved. At the end of the substep these have the
-//! velocity that they had at its start, but none into the surface.
+//! It is no motion: links that it stretches would throw the points that it has moved. Those that it has moved by more than the
+//! thickness have at the end of the substep the velocity that they had at its start, but none into the surface.
 
 use nalgebra::Vector3;
 
@@ -75,7 +75,7 @@ fn push_out_of<R: Real>(
     cloth: usize,
 ) {
     let thickness = surface.thickness + frame.cloths[cloth].thickness;
-    let before = state.pushed_out.len();
+    let mut is_moved = false;
     for row in model.points() {
         let mut moved = state.displacement[row as usize];
         let correction =
@@ -83,6 +83,11 @@ fn push_out_of<R: Real>(
         let Some((correction, normal)) = correction.filter(|_| moved.0[3] > R::ZERO) else { continue };
         (0..3).for_each(|axis| moved.0[axis] += R::from_f64(correction[axis]));
         state.displacement[row as usize] = moved;
+        is_moved = true;
+        contact.invalidate_bounds(row as usize);
+        if correction.norm() <= thickness {
+            continue; // no more than contact moves it
+        }
         let velocity = state.velocity[row as usize];
         let inward = dot(velocity.xyz(), normal.map(R::from_f64));
         let kept = sub(
@@ -90,9 +95,8 @@ fn push_out_of<R: Real>(
             scale(normal.map(R::from_f64), if inward < R::ZERO { inward } else { R::ZERO }),
         );
         state.pushed_out.push((row, kept));
-        contact.invalidate_bounds(row as usize);
     }
-    if state.pushed_out.len() > before {
+    if is_moved {
         contact.active_windows[cloth] = [0.0; 2];
         if let Some(cloth_contacts) = &mut contact.cloth_contacts {
             cloth_contacts.untangling.is_search_due[cloth] = true;

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::contact::collider::ColliderState;
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
-use crate::math::{Real, Row4, add, sub, unit};
+use crate::math::{Real, Row4, add};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::state::State;
 
@@ -146,27 +146,28 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         let [x, y, z] = add(self.collider_depenetration(point), depenetration);
         // SAFETY: as above.
         unsafe {
-            if !self.support_before.is_empty()
-                && let Some(direction) = unit(sub(row.xyz(), self.displacement.get(point).xyz()), R::ZERO)
-            {
-                self.bear(point, direction);
-            }
             self.displacement.set(point, row);
             self.by_collider.set(point - self.first, Row4([x, y, z, R::ZERO]));
         }
     }
 
-    /// Notes that a point is borne in a direction of unit length.
+    /// Whether anybody asks what bears a point.
     #[inline(always)]
-    pub fn bear(&self, point: u32, [x, y, z]: [R; 3]) {
-        // SAFETY: as above.
-        unsafe { self.support.set(point, Row4([x, y, z, R::ZERO])) };
+    pub fn notes_support(&self) -> bool {
+        !self.support_before.is_empty()
     }
 
-    /// The direction in which a point was borne in the last step; zero where it was not.
+    /// Notes that a point is borne: along a unit normal, with this friction.
     #[inline(always)]
-    pub fn support(&self, point: u32) -> [R; 3] {
-        self.support_before.get(point as usize).map_or([R::ZERO; 3], |row| row.xyz())
+    pub fn bear(&self, point: u32, [x, y, z]: [R; 3], friction: R) {
+        // SAFETY: as above.
+        unsafe { self.support.set(point, Row4([x, y, z, friction])) };
+    }
+
+    /// The normal along which a point was borne in the last step, and the friction there; zero where it was not.
+    #[inline(always)]
+    pub fn support(&self, point: u32) -> Row4<R> {
+        self.support_before.get(point as usize).copied().unwrap_or(Row4::ZERO)
     }
 
     /// Moves a point off another movable point. `depenetration` is the part of the push without velocity, but

@@ -38,7 +38,7 @@ pub struct ClothStep<'a, R> {
     /// Factor on every thickness: below one where there is too little room.
     pub thickness_scale: R,
     /// The cloths in whose contacts what is borne does not move; none where it is empty.
-    pub has_shock: &'a [bool],
+    pub shock_mask: &'a [bool],
     /// By cloth: the mean motion of its island in the step, in metres, to which motion is truncated; zero where it is empty.
     pub drift: &'a [[R; 3]],
 }
@@ -86,7 +86,7 @@ impl<'a, R: Real> ClothStep<'a, R> {
             material_maps,
             h,
             thickness_scale,
-            has_shock: &[],
+            shock_mask: &[],
             drift: &[],
         }
     }

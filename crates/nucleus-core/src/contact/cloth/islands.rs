@@ -24,10 +24,17 @@ pub fn grow_to_islands<R: Real>(cache: &ContactCache<R>, mask: &mut [bool]) {
 }
 
 /// Finds the mean motion of each island, by mass: the safeguard truncates motion relative to it, and freezes points in it.
-/// Relative to space, it would brake cloth in flight. An island with a pinned point is at rest.
+/// Relative to space, it would brake cloth in flight. An island with a pinned point is at rest, and so is one that may touch an
+/// obstacle: what that does to a part of it would set all of it in motion.
 pub fn find_drift<R: Real>(pass: &mut ContactPass<'_, R>) {
     let mut drift = std::mem::take(&mut pass.contact.drift);
     mean_motions(pass, &mut drift);
+    let is_alone = alone(pass);
+    drift
+        .iter_mut()
+        .zip(is_alone)
+        .filter(|(_, is_alone)| !is_alone)
+        .for_each(|(drift, _)| *drift = [R::ZERO; 3]);
     pass.contact.drift = drift;
 }
 
@@ -36,15 +43,9 @@ pub fn find_drift<R: Real>(pass: &mut ContactPass<'_, R>) {
 pub fn keep_momentum<R: Real>(pass: &mut ContactPass<'_, R>) {
     let mut means = Vec::new();
     mean_motions(pass, &mut means);
-    let mut islands = islands(pass);
-    let mut is_alone = vec![true; means.len()];
-    for cloth in 0..means.len() {
-        is_alone[islands.find(cloth as u32) as usize] &= !is_near_obstacle(pass, cloth);
-    }
+    let is_alone = alone(pass);
     let ContactPass { model, state, contact, .. } = pass;
-    for (cloth, mean) in
-        means.into_iter().enumerate().filter(|&(cloth, _)| is_alone[islands.find(cloth as u32) as usize])
-    {
+    for (cloth, mean) in means.into_iter().enumerate().filter(|&(cloth, _)| is_alone[cloth]) {
         let lost = sub(contact.drift[cloth], mean);
         for row in model.cloths[cloth].points().map(|row| row as usize) {
             let [x, y, z] = sub(state.depenetration_by_cloth[row].xyz(), lost);
@@ -53,7 +54,19 @@ pub fn keep_momentum<R: Real>(pass: &mut ContactPass<'_, R>) {
     }
 }
 
-/// Whether a cloth may touch a collider or the ground in this time step.
+/// Whether each cloth is in an island that only its own cloths can push.
+fn alone<R: Real>(pass: &ContactPass<'_, R>) -> Vec<bool> {
+    let cloths = pass.model.cloths.len();
+    let mut islands = islands(pass);
+    let mut is_alone = vec![true; cloths];
+    for cloth in 0..cloths {
+        is_alone[islands.find(cloth as u32) as usize] &= !is_near_obstacle(pass, cloth);
+    }
+    (0..cloths).map(|cloth| is_alone[islands.find(cloth as u32) as usize]).collect()
+}
+
+/// Whether a cloth may touch a collider or the ground in this time step, or cloth of another layer, which it moves without being
+/// moved.
 fn is_near_obstacle<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
     let ContactPass { model, state, contact, .. } = pass;
     let lists = &contact.collider_contacts[contact.lists_of(cloth)];
@@ -62,8 +75,13 @@ fn is_near_obstacle<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
             model.cloths[cloth].points().filter_map(|row| contact.ground.height(state.position(row)));
         heights.any(|height| height < 2.0 * material.thickness)
     };
+    let others = contact.cloth_contacts.iter().flat_map(|contacts| {
+        let cloths = model.cloths.len();
+        contacts.materials[cloth * cloths..(cloth + 1) * cloths].iter().flatten()
+    });
     lists.iter().any(|list| list.len() > 0 || !list.depenetration.points.is_empty())
         || contact.ground_materials[cloth].as_ref().is_some_and(is_low)
+        || others.into_iter().any(|material| material.mobility != [R::ONE; 2])
 }
 
 fn islands<R: Real>(pass: &ContactPass<'_, R>) -> UnionFind {

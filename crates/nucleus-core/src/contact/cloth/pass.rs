@@ -111,7 +111,7 @@ pub fn resolve_cloth_contacts<R: Real>(
         local_anchors: Some(&*local_anchors),
         anchors,
         mask,
-        has_shock: shock_mask,
+        shock_mask,
         ..ClothStep::new(state, materials, material_maps, schedule.h)
     };
     *counters.contacts.get_mut() += cache.sweep(&step, has_touched, pool);

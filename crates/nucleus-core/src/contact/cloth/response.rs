@@ -122,13 +122,14 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         } else {
             [[R::ZERO; 3]; 2]
         };
-        self.push_apart(
-            step,
-            material,
-            weights,
-            add(along[0], friction_part[0]),
-            add(along[1], friction_part[1]),
-        );
+        let masses = self.inverse_masses(step, material);
+        let [of_push, of_friction] = self.on_borne_side(step, masses, weights, friction);
+        if of_push == of_friction {
+            let moved = [0, 1].map(|part| add(along[part], friction_part[part]));
+            return self.move_apart(step, of_push, weights, moved);
+        }
+        self.move_apart(step, of_push, weights, along);
+        self.move_apart(step, of_friction, weights, friction_part);
     }
 
     /// Moves the two apart by `moved`, each side by its mobility; `depenetration` is the part of it without
@@ -137,14 +138,21 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         &self,
         step: &ClothStep<'_, R>,
         material: &ContactMaterial<R>,
-        (b, c): &([R; N], [R; M]),
+        weights: &([R; N], [R; M]),
         moved: [R; 3],
         depenetration: [R; 3],
     ) {
-        let (mut ours, mut theirs) = self.inverse_masses(step, material);
-        if !step.has_shock.is_empty() {
-            (ours, theirs) = self.on_borne_side(step, (ours, theirs), &(*b, *c));
-        }
+        self.move_apart(step, self.inverse_masses(step, material), weights, [moved, depenetration]);
+    }
+
+    /// The same, given the inverse masses of both sides.
+    fn move_apart(
+        &self,
+        step: &ClothStep<'_, R>,
+        (ours, theirs): ([R; N], [R; M]),
+        (b, c): &([R; N], [R; M]),
+        [moved, depenetration]: [[R; 3]; 2],
+    ) {
         let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
         if all <= R::MIN_DENOMINATOR {
             return;
@@ -317,7 +325,8 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             return false;
         }
         let (b, c) = weights;
-        let (ours, theirs) = self.inverse_masses(step, material);
+        let masses = self.inverse_masses(step, material);
+        let [(ours, theirs), _] = self.on_borne_side(step, masses, &weights, R::ZERO);
         let all = Mobility::of(ours, b).and(Mobility::of(theirs, c)).total();
         if all <= R::MIN_DENOMINATOR {
             return false;

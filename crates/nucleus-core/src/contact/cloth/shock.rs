@@ -6,24 +6,21 @@
 //! heavier than the other. So a side that was borne in the last time step leaves the whole push to the other, which is borne from
 //! then on: a step for each layer.
 //!
-//! The load does not get to the ground. Friction is proportional to it and so is what it has to hold, on a slope; but a heavy
-//! cloth that is drawn over a light one does not take that along.
+//! The load does not get to the ground, so friction acts on a borne side only where it has to slip first: where what bears it has
+//! less friction. Then it is moved by its mass, as everywhere.
 
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::islands::grow_to_islands;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
-use crate::math::{Real, Row4, add, dot, scale, unit};
+use crate::math::{Real, dot, scale};
 use crate::model::Model;
-use crate::state::State;
 
 /// Mass of a point, relative to that of another cloth, above which one sweep does not bear it.
 const MASS_RATIO: f64 = 2.0;
-/// Rigidity of a body that passes a load on to all of its points.
-const LEAST_RIGIDITY: f64 = 1.0;
 /// Cosine of the angle between a push and the direction from which a point is borne, up to which it does not move.
-const LEAST_COSINE: f64 = 0.7;
+const LEAST_COSINE: f64 = 0.9;
 
 /// Whether a cloth can lie on one that is so much lighter, above a collider or the ground.
 pub fn has_shock<R: Real>(model: &Model<R>, contact: &ContactSystem<R>, frame: &FrameInput) -> bool {
@@ -57,52 +54,49 @@ pub fn find_shock<R: Real>(pass: &mut ContactPass<'_, R>) {
     }
 }
 
-/// Rigid bodies that were borne anywhere in the last time step are borne as a whole.
-pub fn bear_rigid_bodies<R: Real>(model: &Model<R>, state: &mut State<R>, frame: &FrameInput) {
-    if state.support_before.is_empty() {
-        return;
-    }
-    let rigid = |settings: &f64| *settings >= LEAST_RIGIDITY;
-    for (cloth, settings) in model.cloths.iter().zip(&frame.cloths) {
-        let points = cloth.points();
-        let own = &mut state.support_before[points.start as usize..points.end as usize];
-        let all = own.iter().map(|row| row.xyz()).fold([R::ZERO; 3], add);
-        if let Some([x, y, z]) = unit(all, R::ZERO).filter(|_| rigid(&settings.rigidity)) {
-            own.fill(Row4([x, y, z, R::ZERO]));
-        }
-    }
-}
-
 impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
-    /// Given the inverse masses of both sides, those in shock propagation: zero for a side that is borne, while the other is
-    /// borne from now on.
+    /// Given the inverse masses of both sides, those of shock propagation for a push and for friction: zero for a side that is
+    /// borne, while the other is borne from now on. Friction moves a borne side all the same where what bears it has less.
     pub(super) fn on_borne_side(
         &self,
         step: &ClothStep<'_, R>,
         (ours, theirs): ([R; N], [R; M]),
         (b, c): &([R; N], [R; M]),
-    ) -> ([R; N], [R; M]) {
-        if !step.has_shock[self.cloths(step.materials.len())[0]] {
-            return (ours, theirs);
+        friction: R,
+    ) -> [([R; N], [R; M]); 2] {
+        let all = (ours, theirs);
+        if step.shock_mask.is_empty() || !step.shock_mask[self.cloths(step.materials.len())[0]] {
+            return [all; 2];
         }
         let (up, down) = (self.normal, scale(self.normal, -R::ONE));
-        match (is_borne(step, &self.ours, b, down), is_borne(step, &self.theirs, c, up)) {
-            (true, false) => {
-                self.theirs.iter().for_each(|&point| step.writer.bear(point, down));
-                ([R::ZERO; N], theirs)
+        let (without, grip) = match (grip(step, &self.ours, b, down), grip(step, &self.theirs, c, up)) {
+            (Some(grip), None) => {
+                self.theirs.iter().for_each(|&point| step.writer.bear(point, down, min(grip, friction)));
+                (([R::ZERO; N], theirs), grip)
             }
-            (false, true) => {
-                self.ours.iter().for_each(|&point| step.writer.bear(point, up));
-                (ours, [R::ZERO; M])
+            (None, Some(grip)) => {
+                self.ours.iter().for_each(|&point| step.writer.bear(point, up, min(grip, friction)));
+                ((ours, [R::ZERO; M]), grip)
             }
-            _ => (ours, theirs),
-        }
+            _ => return [all; 2],
+        };
+        [without, if grip >= friction { without } else { all }]
     }
 }
 
-/// Whether all points at a contact were borne in about this direction.
-fn is_borne<R: Real>(step: &ClothStep<'_, R>, points: &[u32], weights: &[R], direction: [R; 3]) -> bool {
-    let least = R::from_f64(LEAST_COSINE);
-    let mut pairs = points.iter().zip(weights);
-    pairs.all(|(&point, &weight)| weight == R::ZERO || dot(step.writer.support(point), direction) >= least)
+/// The least friction with what bore the points at a contact in about this direction; `None` where one was not borne.
+fn grip<R: Real>(step: &ClothStep<'_, R>, points: &[u32], weights: &[R], direction: [R; 3]) -> Option<R> {
+    let mut least = R::from_f64(f64::from(f32::MAX));
+    for (&point, _) in points.iter().zip(weights).filter(|(_, weight)| **weight != R::ZERO) {
+        let support = step.writer.support(point);
+        if dot(support.xyz(), direction) < R::from_f64(LEAST_COSINE) {
+            return None;
+        }
+        least = min(least, support.0[3]);
+    }
+    Some(least)
+}
+
+fn min<R: Real>(a: R, b: R) -> R {
+    if b < a { b } else { a }
 }
