@@ -234,12 +234,11 @@ impl<R: Real> ContactPass<'_, R> {
         &mut self,
         work: impl FnOnce(&mut ContactCache<R>, &ClothStep<'_, R>, &ThreadPool) -> T,
     ) -> Option<T> {
-        let ContactSystem { cloth_contacts, material_maps, drift, shock_mask, .. } = &mut *self.contact;
+        let ContactSystem { cloth_contacts, material_maps, drift, .. } = &mut *self.contact;
         let ClothContacts { cache, materials, local_anchors, .. } = cloth_contacts.as_mut()?;
         let step = ClothStep {
             local_anchors: Some(&*local_anchors),
             drift,
-            shock_mask,
             ..ClothStep::new(self.state, materials, material_maps, self.schedule.h)
         };
         Some(work(cache, &step, self.pool))

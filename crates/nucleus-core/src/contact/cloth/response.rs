@@ -325,8 +325,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             return false;
         }
         let (b, c) = weights;
-        let masses = self.inverse_masses(step, material);
-        let [(ours, theirs), _] = self.on_borne_side(step, masses, &weights, R::ZERO);
+        let (ours, theirs) = self.inverse_masses(step, material);
         let all = Mobility::of(ours, b).and(Mobility::of(theirs, c)).total();
         if all <= R::MIN_DENOMINATOR {
             return false;

@@ -12,6 +12,7 @@
 use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::islands::grow_to_islands;
+use crate::contact::material::ContactMaterial;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
 use crate::math::{Real, dot, scale};
@@ -36,9 +37,11 @@ fn is_unequal<R: Real>(model: &Model<R>, cloths: [usize; 2]) -> bool {
     a > b * MASS_RATIO || b > a * MASS_RATIO
 }
 
-/// Finds the islands of cloths in which a heavier one is near a lighter one.
+/// Finds the islands of cloths in which a heavier one is near a lighter one. What bounces does not rest: a sheet on a borne one
+/// that does not give way would gain energy.
 pub fn find_shock<R: Real>(pass: &mut ContactPass<'_, R>) {
-    let ContactSystem { cloth_contacts, has_shock, shock_mask, .. } = &mut *pass.contact;
+    let ContactSystem { cloth_contacts, has_shock, shock_mask, collider_materials, ground_materials, .. } =
+        &mut *pass.contact;
     shock_mask.clear();
     let Some(ClothContacts { cache, materials, .. }) = cloth_contacts.as_ref().filter(|_| *has_shock) else {
         return;
@@ -47,10 +50,16 @@ pub fn find_shock<R: Real>(pass: &mut ContactPass<'_, R>) {
     for [a, b] in cache.cloth_pairs(materials.len()).filter(|&pair| is_unequal(pass.model, pair)) {
         (shock_mask[a], shock_mask[b]) = (true, true);
     }
-    if shock_mask.contains(&true) {
-        grow_to_islands(cache, shock_mask);
-    } else {
-        shock_mask.clear();
+    if !shock_mask.contains(&true) {
+        return shock_mask.clear();
+    }
+    grow_to_islands(cache, shock_mask);
+    let (cloths, colliders) = (shock_mask.len(), collider_materials.len() / shock_mask.len());
+    for (cloth, mark) in shock_mask.iter_mut().enumerate() {
+        let among_cloths = materials[cloth * cloths..(cloth + 1) * cloths].iter().flatten();
+        let with_colliders = collider_materials[cloth * colliders..(cloth + 1) * colliders].iter().flatten();
+        let mut all = among_cloths.chain(with_colliders).chain(&ground_materials[cloth]);
+        *mark &= !all.any(ContactMaterial::has_restitution);
     }
 }
 
@@ -65,7 +74,8 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         friction: R,
     ) -> [([R; N], [R; M]); 2] {
         let all = (ours, theirs);
-        if step.shock_mask.is_empty() || !step.shock_mask[self.cloths(step.materials.len())[0]] {
+        let cloths = self.cloths(step.materials.len());
+        if step.shock_mask.is_empty() || cloths.iter().any(|&cloth| !step.shock_mask[cloth]) {
             return [all; 2];
         }
         let (up, down) = (self.normal, scale(self.normal, -R::ONE));
