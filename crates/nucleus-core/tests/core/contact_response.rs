@@ -289,8 +289,8 @@ fn a_sheet_that_is_pushed_out_of_a_ball_is_not_thrown() {
         let mut velocities = Vec::new();
         solver.velocities(FIRST, 1.0, &mut velocities);
         let mean = velocities.iter().map(|v| Vec3::from(v.map(f64::from))).sum::<Vec3>() / 81.0;
-        // The links that the ball has stretched spring back.
-        assert!(mean.norm() < 1.0, "{share}: {} m/s", mean.norm());
+        // The links that the ball has stretched by up to 73 % spring back; without its velocity back it has 10 and 24 m/s.
+        assert!(mean.norm() < 2.0, "{share}: {} m/s", mean.norm());
     }
 }
 
