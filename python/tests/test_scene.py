@@ -60,13 +60,14 @@ def test_a_scene_from_a_dict_is_the_scene_from_text(folder):
 
 
 def test_a_scene_from_a_dict_has_its_connections():
-    scene = nucleus.Scene.from_dict({
-        "nodes": {
-            "nucleus1": {"type": "nucleus"},
-            "sheet": {"type": "polyPlane"},
-            "lift": {"type": "transform", "translateY": 0.25},
-            "cloth1": {"type": "nCloth", "inputMesh": "sheet"},
-        },
-        "connections": [("lift.translateY", "cloth1.friction")],
-    })
-    assert scene["cloth1"]["friction"] == 0.25
+    nodes = {
+        "nucleus1": {"type": "nucleus"},
+        "sheet": {"type": "polyPlane"},
+        "lift": {"type": "transform", "translateY": 0.25},
+        "cloth1": {"type": "nCloth", "inputMesh": "sheet"},
+    }
+    pair = ("lift.translateY", "cloth1.friction")
+    scene = nucleus.Scene.from_dict({"nodes": nodes, "connections": [pair]})
+    assert 'connections: [("lift.translateY", "cloth1.friction")],' in scene.text
+    with pytest.raises(nucleus.SceneError):
+        nucleus.Scene.from_dict({"nodes": nodes, "connections": [("lift.nothing", pair[1])]})
