@@ -35,7 +35,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver14";
+const KIND: [u8; 8] = *b"solver13";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -138,8 +138,6 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         material_maps,
         cloth_contacts,
         pair_filter,
-        has_shock: _,
-        shock_mask: _,
         bouncing: _,
         touches,
         ground,
@@ -172,7 +170,6 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     load_column(&mut contact.touches, from)?;
     contact.material_maps.kept_gaps = Encode::decode(from)?;
     state.load(from)?;
-    [0, state.anchor.len()].contains(&state.support.len()).then_some(())?;
     state.displaced = Encode::decode(from)?;
     let is_ascending = state.displaced.is_sorted_by(|(row, _), (next, _)| row < next);
     let is_last_valid = state.displaced.last().is_none_or(|&(row, _)| (row as usize) < state.anchor.len());
@@ -399,10 +396,10 @@ fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: 
 
 checkpoint_struct!([R: Real] State<R> {
     columns: [anchor, displacement, velocity, chambers, rotations],
-    values: [wind_travel, support],
+    values: [wind_travel],
     parts: [populations],
     rebuilt: [
-        start, depenetration_by_collider, depenetration_by_cloth, support_before, pushed_out, displaced, step_length, predicted, normal, corrections, area, added_wind,
+        start, depenetration_by_collider, depenetration_by_cloth, pushed_out, displaced, step_length, predicted, normal, corrections, area, added_wind,
         field, spins, inverse_mass
     ],
 });

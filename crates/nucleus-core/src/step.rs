@@ -27,7 +27,6 @@ use crate::constraints::whole;
 use crate::contact::cloth::pass::{
     apply_cloth_adhesion, balance_joined_cloths, begin_cloth_contact, resolve_cloth_contacts,
 };
-use crate::contact::cloth::shock::has_shock;
 use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
 use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
 use crate::contact::collider::start_gaps::record_start_gaps;
@@ -139,7 +138,6 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     let links_changed = form_links(links, model, frame);
     update_pair_filter(contact, (model, state), links, frame, links_changed);
     balance_joined_cloths(contact, links);
-    contact.has_shock = has_shock(model, contact, frame);
     begin_links(links, model, state, contact, frame);
     let anchors = if contact.is_free.contains(&false) { &state.anchor[..] } else { &[] };
     contact.ground.begin_frame(frame.plane.as_ref(), anchors, &contact.pair_filter);
@@ -252,7 +250,7 @@ fn solve_time_step<R: CompiledReal>(
         || !solver.model.colliders.is_empty()
         || solver.contact.cloth_contacts.is_some();
     let can_touch = is_touchable && solver.contact.is_free.contains(&false);
-    solver.state.store_step_start(schedule.h, can_touch, solver.contact.has_shock, &solver.pool);
+    solver.state.store_step_start(schedule.h, can_touch, &solver.pool);
     whole::drag_to_input_meshes(&solver.model.cloths, &mut solver.state, frame, schedule.h, &solver.pool);
     let Solver { model, state, contact, links, liquids, pool, .. } = solver;
     for (cloth, liquid) in liquids.iter_mut().enumerate() {

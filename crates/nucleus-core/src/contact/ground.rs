@@ -312,9 +312,8 @@ impl<R: Real> GroundContact<'_, R> {
             let motion = sub(sub(row.xyz(), start), self.plane.travel);
             let along = sub(motion, scale(normal, dot(normal, motion)));
             let [before, now] = gaps.map(|gap| scale(normal, gap));
-            let Some(correction) = adhesion.correction(before, add(now, along), normal, self.h) else {
-                continue;
-            };
+            let correction =
+                adhesion.correction(before, add(now, along), normal, self.h).unwrap_or([R::ZERO; 3]);
             (0..3).for_each(|axis| row.0[axis] += correction[axis]);
             self.writer.push_by_collider(point, row, [R::ZERO; 3]);
         }
@@ -348,9 +347,6 @@ impl<R: Real> GroundContact<'_, R> {
         let moved = add(scale(normal, push.length()), friction_part);
         (0..3).for_each(|axis| row.0[axis] += moved[axis]);
         self.writer.push_by_collider(point, row, add(scale(normal, push.depenetration), given_back));
-        if self.writer.notes_support() {
-            self.writer.bear(point, normal, friction);
-        }
     }
 }
 

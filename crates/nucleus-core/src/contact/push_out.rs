@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use crate::contact::placed_surface::{Nearest, PlacedSurface};
 use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, PushOut};
-use crate::math::{Real, Row4, dot, scale, sub};
+use crate::math::{Real, Row4, dot, min, scale, sub};
 use crate::model::{ClothModel, Model};
 use crate::state::State;
 
@@ -88,13 +88,9 @@ fn push_out_of<R: Real>(
         if correction.norm() <= thickness {
             continue; // no more than contact moves it
         }
-        let velocity = state.velocity[row as usize];
-        let inward = dot(velocity.xyz(), normal.map(R::from_f64));
-        let kept = sub(
-            velocity.xyz(),
-            scale(normal.map(R::from_f64), if inward < R::ZERO { inward } else { R::ZERO }),
-        );
-        state.pushed_out.push((row, kept));
+        let (normal, velocity) = (normal.map(R::from_f64), state.velocity[row as usize].xyz());
+        let inward = min(dot(velocity, normal), R::ZERO);
+        state.pushed_out.push((row, sub(velocity, scale(normal, inward))));
     }
     if is_moved {
         contact.active_windows[cloth] = [0.0; 2];

@@ -5,11 +5,13 @@
 //!    of its thickness that fits.
 //! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little room for
 //!    all of it.
-//! 3. Motion is truncated at a division plane between the two elements, which moves with their island, or, at a collider or the
-//!    ground, reverted to the start of the step in its moving frame (planar divide and truncate).
-//! 4. The points of the pair freeze: they move with the mean motion of their island, or with a collider, a pin or a point that
-//!    these carry.
+//! 3. Motion is truncated at a division plane between the two elements, or, at a collider or the ground, reverted to the start
+//!    of the step in its moving frame (planar divide and truncate).
+//! 4. The points of the pair freeze: they keep the positions of the start of the step, or move with a collider, a pin or a
+//!    point that these carry.
 //! 5. The pair is accepted as unresolved, and counted.
+//!
+//! Cloth that only cloth can touch is truncated and frozen relative to the mean motion of its island.
 //!
 //! Only islands of cloths with a failed certificate push again; of free points that touch no cloth, only those that failed.
 //!

@@ -57,16 +57,13 @@ pub struct ContactSystem<R: Real> {
     pub cloth_contacts: Option<ClothContacts<R>>,
     /// The cloths whose contacts a pass resolves; all where it is empty.
     pub contact_mask: Vec<bool>,
-    /// By cloth: the mean motion of its island in a time step in which motion is truncated, in metres; empty before.
-    pub drift: Vec<[R; 3]>,
+    /// By cloth: the mean motion of its island in a time step in which motion is truncated, in metres, if nothing else may touch
+    /// it; empty before.
+    pub drift: Vec<Option<[R; 3]>>,
     /// Whether each cloth has a contact without certificate: among cloths, and with colliders.
     pub has_unproven: [Vec<AtomicBool>; 2],
     /// Elements that do not collide with each other.
     pub pair_filter: PairFilter,
-    /// Whether a heavier cloth can lie on a lighter one in this frame, above a collider or the ground.
-    pub has_shock: bool,
-    /// The cloths in islands where it is near one.
-    pub shock_mask: Vec<bool>,
     /// What touches at the end of a time step where it bounces: a buffer.
     pub bouncing: Vec<TouchingPoint<R>>,
     /// Whether each cloth had a contact in the last frame.
@@ -119,8 +116,6 @@ impl<R: Real> ContactSystem<R> {
             drift: Vec::new(),
             has_unproven: [(); 2].map(|()| models.iter().map(|_| AtomicBool::new(false)).collect()),
             pair_filter: PairFilter::default(),
-            has_shock: false,
-            shock_mask: Vec::new(),
             bouncing: Vec::new(),
             // Cloth that starts from a saved state may be in contact; the first frame finds out.
             touches: cloths.iter().map(|cloth| !cloth.start.positions.is_empty()).collect(),

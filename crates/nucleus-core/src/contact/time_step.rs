@@ -52,9 +52,6 @@ pub struct PositionWriter<'a, R> {
     displacement: DisjointSlice<'a, Row4<R>>,
     by_collider: DisjointSlice<'a, Row4<R>>,
     by_cloth: DisjointSlice<'a, Row4<R>>,
-    /// What bears each point, in this step and in the last; empty where nobody asks.
-    support: DisjointSlice<'a, Row4<R>>,
-    support_before: &'a [Row4<R>],
     predicted: &'a [Row4<R>],
     /// The row of the first entry of all columns but the displacements.
     first: u32,
@@ -70,8 +67,6 @@ impl<'a, R: Real> PositionWriter<'a, R> {
             predicted,
             depenetration_by_collider,
             depenetration_by_cloth,
-            support,
-            support_before,
             start,
             anchor,
             ..
@@ -79,10 +74,7 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         let [displacement, by_collider, by_cloth] =
             [displacement, depenetration_by_collider, depenetration_by_cloth]
                 .map(|column| DisjointSlice::new(column));
-        let support = DisjointSlice::new(support);
-        let writer =
-            Self { displacement, by_collider, by_cloth, support, support_before, predicted, first: 0 };
-        (writer, start, anchor)
+        (Self { displacement, by_collider, by_cloth, predicted, first: 0 }, start, anchor)
     }
 
     /// The columns of a run of points from the row `first` on, of which a task keeps all but the displacements. The second
@@ -94,8 +86,7 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         first: u32,
     ) -> Self {
         let [by_collider, by_cloth] = [by_collider, by_cloth].map(DisjointSlice::new);
-        let (support, support_before) = (DisjointSlice::new(&mut []), &[][..]);
-        Self { displacement, by_collider, by_cloth, support, support_before, predicted, first }
+        Self { displacement, by_collider, by_cloth, predicted, first }
     }
 
     /// The place of a point in all columns but the displacements.
@@ -107,8 +98,9 @@ impl<'a, R: Real> PositionWriter<'a, R> {
     /// The displacement of a point without constraints and contacts, but with its depenetration.
     #[inline(always)]
     pub fn predicted(&self, point: u32) -> [R; 3] {
-        let [by_collider, by_cloth] = [self.collider_depenetration(point), self.cloth_depenetration(point)];
-        add(self.predicted[self.place_of(point)].xyz(), add(by_collider, by_cloth))
+        // SAFETY: as below.
+        let by_cloth = unsafe { self.by_cloth.get(point - self.first) }.xyz();
+        add(self.predicted[self.place_of(point)].xyz(), add(self.collider_depenetration(point), by_cloth))
     }
 
     /// How far constraints and contacts have moved a point that touches no cloth, without its depenetration, in metres.
@@ -133,13 +125,6 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         unsafe { self.by_collider.get(point - self.first) }.xyz()
     }
 
-    /// How far cloth has depenetrated a point in this step, in metres.
-    #[inline(always)]
-    pub fn cloth_depenetration(&self, point: u32) -> [R; 3] {
-        // SAFETY: as above.
-        unsafe { self.by_cloth.get(point - self.first) }.xyz()
-    }
-
     /// Moves a point off a collider; `depenetration` is the part of the push without velocity.
     #[inline(always)]
     pub fn push_by_collider(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
@@ -149,25 +134,6 @@ impl<'a, R: Real> PositionWriter<'a, R> {
             self.displacement.set(point, row);
             self.by_collider.set(point - self.first, Row4([x, y, z, R::ZERO]));
         }
-    }
-
-    /// Whether anybody asks what bears a point.
-    #[inline(always)]
-    pub fn notes_support(&self) -> bool {
-        !self.support_before.is_empty()
-    }
-
-    /// Notes that a point is borne: along a unit normal, with this friction.
-    #[inline(always)]
-    pub fn bear(&self, point: u32, [x, y, z]: [R; 3], friction: R) {
-        // SAFETY: as above.
-        unsafe { self.support.set(point, Row4([x, y, z, friction])) };
-    }
-
-    /// The normal along which a point was borne in the last step, and the friction there; zero where it was not.
-    #[inline(always)]
-    pub fn support(&self, point: u32) -> Row4<R> {
-        self.support_before.get(point as usize).copied().unwrap_or(Row4::ZERO)
     }
 
     /// Moves a point off another movable point. `depenetration` is the part of the push without velocity, but

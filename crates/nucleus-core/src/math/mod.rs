@@ -14,7 +14,7 @@ mod sse2;
 mod vector;
 
 pub use real::{Lanes, Quad, Real, Two};
-pub use vector::{Row4, add, by_axis, clamp_length, cross, dot, max, scale, sub, unit};
+pub use vector::{Row4, add, by_axis, clamp_length, cross, dot, max, min, scale, sub, unit};
 
 #[cfg(target_arch = "x86_64")]
 use {avx2::F32x8, sse2::F32x4};

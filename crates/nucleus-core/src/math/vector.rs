@@ -96,6 +96,12 @@ pub fn clamp_length<R: Real>(a: [R; 3], most: R) -> [R; 3] {
     if length > most { scale(a, most / length) } else { a }
 }
 
+/// The smaller of two numbers.
+#[inline(always)]
+pub fn min<R: Real>(x: R, y: R) -> R {
+    if y < x { y } else { x }
+}
+
 /// The larger of two numbers.
 #[inline(always)]
 pub fn max<R: Real>(x: R, y: R) -> R {

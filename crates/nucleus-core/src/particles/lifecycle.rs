@@ -224,7 +224,6 @@ fn set_row<R: Real>(
         &mut state.start,
         &mut state.depenetration_by_collider,
         &mut state.depenetration_by_cloth,
-        &mut state.support,
         &mut state.field,
     ];
     columns.into_iter().filter_map(|column| column.get_mut(row)).for_each(|value| *value = Row4::ZERO);
@@ -260,7 +259,6 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) -> b
         &mut state.start,
         &mut state.depenetration_by_collider,
         &mut state.depenetration_by_cloth,
-        &mut state.support,
         &mut state.field,
     ] {
         close_up(column.get_mut(rows.clone()).unwrap_or_default(), kept);

@@ -52,9 +52,8 @@ impl<R: Real> State<R> {
         }
     }
 
-    /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible. `has_shock` says whether
-    /// the step notes what colliders support.
-    pub fn store_step_start(&mut self, h: f64, can_touch: bool, has_shock: bool, pool: &ThreadPool) {
+    /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible.
+    pub fn store_step_start(&mut self, h: f64, can_touch: bool, pool: &ThreadPool) {
         let Self {
             start, depenetration_by_collider, depenetration_by_cloth, displacement, displaced, ..
         } = self;
@@ -67,11 +66,6 @@ impl<R: Real> State<R> {
         if can_touch {
             start.resize(rows, Row4::ZERO);
         }
-        std::mem::swap(&mut self.support, &mut self.support_before);
-        self.support.clear();
-        let rows_in_shock = if has_shock { rows } else { 0 };
-        self.support.resize(rows_in_shock, Row4::ZERO);
-        self.support_before.resize(rows_in_shock, Row4::ZERO);
         let columns = [start, depenetration_by_collider, depenetration_by_cloth]
             .map(|column| DisjointSlice::new(column));
         pool.parallel_for(rows.div_ceil(ROWS_PER_TASK), |task| {

@@ -35,10 +35,6 @@ pub struct State<R> {
     /// collider takes back does become velocity, because cloth between the two carries the load. Empty where no contact
     /// is possible.
     pub depenetration_by_cloth: Vec<Row4<R>>,
-    /// The unit normal along which a collider, or what it bears, has pushed each point in the time step, and the friction there;
-    /// zero where none has. And in the step before. Empty where no heavier cloth can lie on a lighter one.
-    pub support: Vec<Row4<R>>,
-    pub support_before: Vec<Row4<R>>,
     /// Points that `pushOut` has moved in the substep, and their velocities in m/s.
     pub pushed_out: Vec<(u32, [R; 3])>,
     /// Free points that contact has displaced without velocity in the time step, in order, and their motion in m/s.

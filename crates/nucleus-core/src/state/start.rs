@@ -18,8 +18,6 @@ impl<R: Real> State<R> {
             start: Vec::new(),
             depenetration_by_collider: Vec::new(),
             depenetration_by_cloth: Vec::new(),
-            support: Vec::new(),
-            support_before: Vec::new(),
             pushed_out: Vec::new(),
             displaced: Vec::new(),
             step_length: 0.0,

@@ -37,10 +37,8 @@ pub struct ClothStep<'a, R> {
     pub h: R,
     /// Factor on every thickness: below one where there is too little room.
     pub thickness_scale: R,
-    /// The cloths in whose contacts what is borne does not move; none where it is empty.
-    pub shock_mask: &'a [bool],
-    /// By cloth: the mean motion of its island in the step, in metres, to which motion is truncated; zero where it is empty.
-    pub drift: &'a [[R; 3]],
+    /// By cloth: the mean motion of its island in the step, in metres, to which motion is truncated instead of to rest.
+    pub drift: &'a [Option<[R; 3]>],
 }
 
 /// The reference of friction anchors.
@@ -86,7 +84,6 @@ impl<'a, R: Real> ClothStep<'a, R> {
             material_maps,
             h,
             thickness_scale,
-            shock_mask: &[],
             drift: &[],
         }
     }
@@ -247,9 +244,9 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         step.mask.is_empty() || step.resolves(self.params.kind.material())
     }
 
-    /// The mean motion of its island in the step, in metres.
+    /// The motion of its island in the step to which its own is truncated, in metres.
     pub(super) fn drift(&self, step: &ClothStep<'_, R>) -> [R; 3] {
-        step.drift.get(self.cloths(step.materials.len())[0]).copied().unwrap_or([R::ZERO; 3])
+        step.drift.get(self.cloths(step.materials.len())[0]).copied().flatten().unwrap_or([R::ZERO; 3])
     }
 
     /// The cloths of its two sides, given the number of materials.

@@ -18,7 +18,7 @@ pub enum Frozen {
     #[default]
     Free,
     /// Where it was at the start of the step, moved by the mean motion of its island.
-    AtStart,
+    WithIsland,
     /// With a pin, the ground, a face of a collider that deforms, or a point that these carry.
     Carried,
     /// With a collider of affine motion, by its index.
@@ -39,7 +39,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let with = points().map(held).find(|frozen| matches!(frozen, Frozen::With(_)));
         let carried = points().find(|&point| held(point) == Frozen::Carried);
         let motion = carried.map_or(self.drift(step), |point| sub(step.row(point).xyz(), step.start(point)));
-        let of_others = if carried.is_some() { Frozen::Carried } else { Frozen::AtStart };
+        let of_others = if carried.is_some() { Frozen::Carried } else { Frozen::WithIsland };
         let state = with.unwrap_or(of_others);
         for point in points() {
             let carrier = match state {

@@ -24,30 +24,24 @@ pub fn grow_to_islands<R: Real>(cache: &ContactCache<R>, mask: &mut [bool]) {
 }
 
 /// Finds the mean motion of each island, by mass: the safeguard truncates motion relative to it, and freezes points in it.
-/// Relative to space, it would brake cloth in flight. An island with a pinned point is at rest, and so is one that may touch an
-/// obstacle: what that does to a part of it would set all of it in motion.
+/// Relative to space, it would brake cloth in flight. An island with a pinned point is at rest. One that may touch an obstacle
+/// has none: what that does to a part of it would set all of it in motion.
 pub fn find_drift<R: Real>(pass: &mut ContactPass<'_, R>) {
-    let mut drift = std::mem::take(&mut pass.contact.drift);
-    mean_motions(pass, &mut drift);
-    let is_alone = alone(pass);
-    drift
-        .iter_mut()
-        .zip(is_alone)
-        .filter(|(_, is_alone)| !is_alone)
-        .for_each(|(drift, _)| *drift = [R::ZERO; 3]);
-    pass.contact.drift = drift;
+    let (means, is_alone) = (mean_motions(pass), alone(pass));
+    pass.contact.drift.clear();
+    pass.contact
+        .drift
+        .extend(means.into_iter().zip(is_alone).map(|(mean, is_alone)| is_alone.then_some(mean)));
 }
 
-/// Gives islands that touch neither a collider nor the ground the momentum back that truncation has taken from them or given to
-/// them. It changes velocities and no position.
+/// Gives islands that have a drift the momentum back that truncation has taken from them or given to them. It changes velocities
+/// and no position.
 pub fn keep_momentum<R: Real>(pass: &mut ContactPass<'_, R>) {
-    let mut means = Vec::new();
-    mean_motions(pass, &mut means);
-    let is_alone = alone(pass);
+    let means = mean_motions(pass);
     let ContactPass { model, state, contact, .. } = pass;
-    for (cloth, mean) in means.into_iter().enumerate().filter(|&(cloth, _)| is_alone[cloth]) {
-        let lost = sub(contact.drift[cloth], mean);
-        for row in model.cloths[cloth].points().map(|row| row as usize) {
+    for ((cloth, drift), mean) in model.cloths.iter().zip(&contact.drift).zip(means) {
+        let Some(lost) = drift.map(|drift| sub(drift, mean)) else { continue };
+        for row in cloth.points().map(|row| row as usize) {
             let [x, y, z] = sub(state.depenetration_by_cloth[row].xyz(), lost);
             state.depenetration_by_cloth[row] = Row4([x, y, z, R::ZERO]);
         }
@@ -93,8 +87,8 @@ fn islands<R: Real>(pass: &ContactPass<'_, R>) -> UnionFind {
     islands
 }
 
-/// Replaces `means` by the mean motion in the time step of each cloth's island, in metres, without depenetration.
-fn mean_motions<R: Real>(pass: &ContactPass<'_, R>, means: &mut Vec<[R; 3]>) {
+/// The mean motion in the time step of each cloth's island, in metres, without depenetration.
+fn mean_motions<R: Real>(pass: &ContactPass<'_, R>) -> Vec<[R; 3]> {
     let ContactPass { model, state, .. } = pass;
     let mut islands = islands(pass);
     // Mass, and its motion; infinite where a point is pinned.
@@ -112,10 +106,10 @@ fn mean_motions<R: Real>(pass: &ContactPass<'_, R>, means: &mut Vec<[R; 3]>) {
             sum[3] += mass;
         }
     }
-    means.clear();
-    means.extend((0..model.cloths.len()).map(|cloth| {
+    let mean = |cloth: usize| {
         let [x, y, z, mass] = sums[islands.find(cloth as u32) as usize];
         let has_mean = mass.is_finite() && mass > 0.0;
         [x, y, z].map(|moved| R::from_f64(if has_mean { moved / mass } else { 0.0 }))
-    }));
+    };
+    (0..model.cloths.len()).map(mean).collect()
 }

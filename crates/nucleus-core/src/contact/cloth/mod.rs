@@ -14,7 +14,6 @@
 //! | one contact | [`contact`] |
 //! | a fast lower bound on its gap | [`local_anchors`] |
 //! | its push, friction anchor, adhesion and restitution | [`response`] |
-//! | a heavy cloth on a light one | [`shock`] |
 //! | its certificate, and truncation at a division plane | [`certify`] |
 //! | points that are frozen, or carried | [`frozen`] |
 //! | islands of cloths, and the mean motion of each | [`islands`] |
@@ -45,6 +44,5 @@ pub mod pass;
 mod query;
 pub mod response;
 mod search;
-pub mod shock;
 mod swept_points;
 pub mod untangling;

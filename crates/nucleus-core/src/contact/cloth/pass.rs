@@ -5,7 +5,6 @@ use crate::contact::cloth::broad_phase::update_cloth_candidates;
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::contact::{ClothStep, FrictionAnchors};
 use crate::contact::cloth::contacts::ClothContacts;
-use crate::contact::cloth::shock::find_shock;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::ClothId;
@@ -85,15 +84,9 @@ pub fn resolve_cloth_contacts<R: Real>(
     watch.enter(Stage::BroadPhase);
     update_cloth_candidates(pass);
     watch.enter(Stage::Contact);
-    find_shock(pass);
     let ContactPass { state, pool, contact, counters, schedule, .. } = pass;
     let ContactSystem {
-        cloth_contacts: Some(cloth_contacts),
-        material_maps,
-        contact_mask,
-        shock_mask,
-        has_touched,
-        ..
+        cloth_contacts: Some(cloth_contacts), material_maps, contact_mask, has_touched, ..
     } = &mut **contact
     else {
         return;
@@ -106,12 +99,12 @@ pub fn resolve_cloth_contacts<R: Real>(
         untangling.untangle(&step, elements, schedule.h);
     }
     let anchors = Some(FrictionAnchors { interval_start, intersecting: untangling.cloth_pairs() });
+    let thickness_scale = R::from_f64(thickness_scale);
     let step = ClothStep {
-        thickness_scale: R::from_f64(thickness_scale),
+        thickness_scale,
         local_anchors: Some(&*local_anchors),
         anchors,
         mask,
-        shock_mask,
         ..ClothStep::new(state, materials, material_maps, schedule.h)
     };
     *counters.contacts.get_mut() += cache.sweep(&step, has_touched, pool);

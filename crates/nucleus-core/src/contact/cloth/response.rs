@@ -122,14 +122,13 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         } else {
             [[R::ZERO; 3]; 2]
         };
-        let masses = self.inverse_masses(step, material);
-        let [of_push, of_friction] = self.on_borne_side(step, masses, weights, friction);
-        if of_push == of_friction {
-            let moved = [0, 1].map(|part| add(along[part], friction_part[part]));
-            return self.move_apart(step, of_push, weights, moved);
-        }
-        self.move_apart(step, of_push, weights, along);
-        self.move_apart(step, of_friction, weights, friction_part);
+        self.push_apart(
+            step,
+            material,
+            weights,
+            add(along[0], friction_part[0]),
+            add(along[1], friction_part[1]),
+        );
     }
 
     /// Moves the two apart by `moved`, each side by its mobility; `depenetration` is the part of it without
@@ -138,21 +137,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         &self,
         step: &ClothStep<'_, R>,
         material: &ContactMaterial<R>,
-        weights: &([R; N], [R; M]),
+        (b, c): &([R; N], [R; M]),
         moved: [R; 3],
         depenetration: [R; 3],
     ) {
-        self.move_apart(step, self.inverse_masses(step, material), weights, [moved, depenetration]);
-    }
-
-    /// The same, given the inverse masses of both sides.
-    fn move_apart(
-        &self,
-        step: &ClothStep<'_, R>,
-        (ours, theirs): ([R; N], [R; M]),
-        (b, c): &([R; N], [R; M]),
-        [moved, depenetration]: [[R; 3]; 2],
-    ) {
+        let (ours, theirs) = self.inverse_masses(step, material);
         let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
         if all <= R::MIN_DENOMINATOR {
             return;

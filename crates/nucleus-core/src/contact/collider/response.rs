@@ -131,10 +131,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             }
             step.writer.push_by_collider(self.points[k], row, scale(depenetration, mobile));
         }
-        if step.writer.notes_support() {
-            let friction = material.friction_at(step.material_maps, self.contact_points(&(self.weights, [])));
-            self.points.iter().for_each(|&point| step.writer.bear(point, self.normal, friction));
-        }
     }
 
     /// The points of the cloth's element and their weights. The collider's vertex maps are in its material at the

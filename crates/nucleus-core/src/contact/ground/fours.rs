@@ -64,9 +64,6 @@ impl<R: Real> GroundContact<'_, R> {
         for lane in (0..4).filter(|lane| pushed >> lane & 1 == 1) {
             let (row, part) = (Row4(rows[lane].to_array()), Row4::<R>(parts[lane].to_array()));
             self.writer.push_by_collider(first + lane as u32, row, part.xyz());
-            if self.writer.notes_support() {
-                self.writer.bear(first + lane as u32, self.plane.normal(), common.friction.to_array()[lane]);
-            }
         }
         u64::from(pushed.count_ones())
     }
