@@ -195,6 +195,19 @@ fn outputs_of_utility_nodes_may_be_connected_as_a_whole() {
     assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
 }
 
+#[test]
+fn conversions_in_a_loop_are_listed_and_the_stored_value_stays() {
+    let nodes = "createNode unitConversion -n \"a\";\ncreateNode unitConversion -n \"b\";\n\
+                 createNode unitConversion -n \"own\";\nsetAttr \"m.t\" -type \"double3\" 3 4 5;\n\
+                 connectAttr \"a.o\" \"b.i\";\nconnectAttr \"b.o\" \"a.i\";\nconnectAttr \"b.o\" \"m.tx\";\n\
+                 connectAttr \"own.o\" \"own.i\";\nconnectAttr \"own.o\" \"m.ty\";\n";
+    let read = read(&format!("{}{nodes}", mesh("m")));
+    near(read.origin("m", 1.0), [3.0, 4.0, 5.0]);
+    for driven in ["m.translateX", "m.translateY"] {
+        assert!(read.omits(driven, "driven by a unitConversion"), "{}", read.imported.omissions);
+    }
+}
+
 /// The transform of the mesh at frames 1 to 3, in the units of a file.
 fn converted(units: &str, nodes: &str) -> [[[f64; 3]; 2]; 3] {
     let read = read(&format!("currentUnit {units};\n{}{nodes}", mesh("m")));

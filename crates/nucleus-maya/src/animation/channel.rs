@@ -6,7 +6,7 @@ use nucleus_graph::graph::Channel;
 use crate::omissions::{Cause, Omissions};
 use crate::scene::{NodeId, Vector3, Wire};
 
-use super::evaluator::{Evaluator, is_conversion};
+use super::evaluator::{Evaluator, MAX_DEPTH, is_conversion};
 
 /// Most frames that are sampled.
 const MAX_FRAMES: i64 = 100_000;
@@ -77,8 +77,13 @@ impl Evaluator<'_> {
         what: &dyn Fn() -> String,
         omissions: &mut Omissions,
     ) -> Option<Channel> {
-        let (mut source, mut total) = (wire.from, factor);
+        let (mut source, mut total, mut passed) = (wire.from, factor, 0);
         while is_conversion(self.scene.kind(source.node)) {
+            passed += 1;
+            if passed > MAX_DEPTH {
+                omissions.add(what(), Cause::Driven(self.scene.kind(source.node).to_owned()));
+                return None;
+            }
             total *= self.conversion(source.node);
             source = self.scene.source(source.node, &["i", "input"], None)?.from;
         }

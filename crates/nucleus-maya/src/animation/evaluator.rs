@@ -11,7 +11,7 @@ use super::names;
 use super::script::Script;
 
 /// Longest chain of nodes that is followed; a longer one is a cycle.
-const MAX_DEPTH: u32 = 200;
+pub(super) const MAX_DEPTH: u32 = 200;
 
 /// Evaluates attributes of a scene.
 pub struct Evaluator<'s> {
