@@ -208,6 +208,61 @@ fn conversions_in_a_loop_are_listed_and_the_stored_value_stays() {
     }
 }
 
+/// Forty nodes of a kind, each of which has the node before it at all its inputs: wires from `$a` to `$b`.
+fn chain(kind: &str, wires: &str) -> String {
+    let mut text = String::new();
+    for k in 0..40 {
+        text += &format!("createNode {kind} -n \"n{k}\";\n");
+        if k > 0 {
+            text += &wires.replace("$a", &format!("n{}", k - 1)).replace("$b", &format!("n{k}"));
+        }
+    }
+    text
+}
+
+#[test]
+fn a_chain_of_nodes_with_shared_inputs_is_evaluated_once_per_node() {
+    // 2^39 times the curve, which is 2 at frame 2, and back.
+    let sums = chain("addDoubleLinear", "connectAttr \"$a.o\" \"$b.i1\";\nconnectAttr \"$a.o\" \"$b.i2\";\n");
+    let ends = format!(
+        "createNode multDoubleLinear -n \"end\";\nsetAttr \".i2\" {};\nconnectAttr \"curve.o\" \"n0.i1\";\n\
+         connectAttr \"n39.o\" \"end.i1\";\nconnectAttr \"end.o\" \"m.tx\";\n",
+        2f64.powi(-39)
+    );
+    near(driven(&format!("{sums}{ends}")).origin("m", 2.0), [2.0, 0.0, 0.0]);
+
+    // As a whole, component by component, and in turn. A mean of equal values is that value.
+    let whole = "connectAttr \"$a.ot\" \"$b.it1\";\nconnectAttr \"$a.ot\" \"$b.it2\";\n";
+    let parts: String = ["x", "y", "z"]
+        .map(|part| whole.replace(".ot", &format!(".ot{part}")).replace("it", &format!("it{part}")))
+        .concat();
+    let mixed = "connectAttr \"$a.ot\" \"$b.it1\";\nconnectAttr \"$a.otx\" \"$b.itx2\";\n\
+                 connectAttr \"$a.outTranslateY\" \"$b.ity2\";\n";
+    for wires in [whole, &parts, mixed] {
+        let blends = chain("pairBlend", &format!("{wires}setAttr \"$b.w\" 0.5;\n"));
+        let ends = "setAttr \"n0.w\" 0;\nconnectAttr \"curve.o\" \"n0.itx1\";\nconnectAttr \"curve.o\" \"n0.ity1\";\n\
+                    connectAttr \"n39.ot\" \"m.t\";\n";
+        near(driven(&format!("{blends}{ends}")).origin("m", 2.0), [2.0, 2.0, 0.0]);
+    }
+}
+
+#[test]
+fn nodes_that_are_their_own_inputs_end_the_chain_of_evaluation() {
+    for (kind, wires) in [
+        (
+            "addDoubleLinear",
+            "connectAttr \"$a.o\" \"$a.i1\";\nconnectAttr \"$a.o\" \"$a.i2\";\nconnectAttr \"$a.o\" \"m.tx\";\n",
+        ),
+        (
+            "multiplyDivide",
+            "connectAttr \"$a.o\" \"$a.i1\";\nconnectAttr \"$a.o\" \"$a.i2\";\nconnectAttr \"$a.o\" \"m.t\";\n",
+        ),
+    ] {
+        let loops = wires.replace("$a", "n");
+        near(driven(&format!("createNode {kind} -n \"n\";\n{loops}")).origin("m", 2.0), [0.0; 3]);
+    }
+}
+
 /// The transform of the mesh at frames 1 to 3, in the units of a file.
 fn converted(units: &str, nodes: &str) -> [[[f64; 3]; 2]; 3] {
     let read = read(&format!("currentUnit {units};\n{}{nodes}", mesh("m")));

@@ -13,6 +13,9 @@ use super::script::Script;
 /// Longest chain of nodes that is followed; a longer one is a cycle.
 pub(super) const MAX_DEPTH: u32 = 200;
 
+/// A plug by its node and path, the component of a vector that is connected as a whole, and the bits of a frame.
+type Wanted<'s> = (NodeId, &'s str, Option<usize>, u64);
+
 /// Evaluates attributes of a scene.
 pub struct Evaluator<'s> {
     /// The scene.
@@ -20,6 +23,8 @@ pub struct Evaluator<'s> {
     curves: RefCell<HashMap<NodeId, Option<Rc<MayaCurve>>>>,
     scripts: RefCell<HashMap<NodeId, Rc<Result<Script, String>>>>,
     pub(super) constraints: RefCell<HashMap<(NodeId, u64), Option<names::Driven>>>,
+    /// Values of the current evaluation: nodes that share inputs would double the work at each of them.
+    known: RefCell<HashMap<Wanted<'s>, Option<f64>>>,
     depth: Cell<u32>,
 }
 
@@ -27,7 +32,7 @@ impl<'s> Evaluator<'s> {
     /// For a scene.
     pub fn new(scene: &'s MayaScene) -> Self {
         let (curves, scripts, constraints) = (RefCell::default(), RefCell::default(), RefCell::default());
-        Self { scene, curves, scripts, constraints, depth: Cell::new(0) }
+        Self { scene, curves, scripts, constraints, known: RefCell::default(), depth: Cell::new(0) }
     }
 
     /// The curve of an `animCurve` node.
@@ -60,13 +65,34 @@ impl<'s> Evaluator<'s> {
 
     /// The value of a plug at a frame; `None` if its node computes it in a way that is not read.
     pub fn output(&self, plug: PlugRef, frame: f64) -> Option<f64> {
-        self.nested(|| self.computed(plug, frame)).filter(|x| x.is_finite())
+        self.once(plug, None, frame, || self.computed(plug, frame).filter(|x| x.is_finite()))
+    }
+
+    /// Computes a value one node further along a chain, at most once in an evaluation; `None` where the chain is too long.
+    fn once(
+        &self,
+        plug: PlugRef,
+        part: Option<usize>,
+        frame: f64,
+        work: impl FnOnce() -> Option<f64>,
+    ) -> Option<f64> {
+        let wanted = (plug.node, self.scene.path(plug).0, part, frame.to_bits());
+        self.nested(|| {
+            let known = self.known.borrow().get(&wanted).copied();
+            known.unwrap_or_else(|| {
+                let found = work();
+                self.known.borrow_mut().insert(wanted, found);
+                found
+            })
+        })
     }
 
     /// Follows a chain of nodes one further; `None` where it is too long.
     pub(super) fn nested<T>(&self, work: impl FnOnce() -> Option<T>) -> Option<T> {
-        if self.depth.get() > MAX_DEPTH {
-            return None;
+        match self.depth.get() {
+            0 => self.known.borrow_mut().clear(),
+            depth if depth > MAX_DEPTH => return None,
+            _ => {}
         }
         self.depth.set(self.depth.get() + 1);
         let found = work();
@@ -142,7 +168,7 @@ impl<'s> Evaluator<'s> {
     /// One component of the output of a node that computes three from its inputs, each stored or connected by component or
     /// as a whole.
     fn blended(&self, node: NodeId, output: &str, part: usize, frame: f64) -> Option<f64> {
-        let get = |vector: Vector3, default: f64| self.vector(node, vector, [default; 3], frame)[part];
+        let get = |vector: Vector3, default: f64| self.component(node, vector, part, default, frame);
         match self.scene.kind(node) {
             "multiplyDivide" => {
                 let [a, b] = [get(names::FACTORS[0], 0.0), get(names::FACTORS[1], 1.0)];
@@ -193,7 +219,7 @@ impl<'s> Evaluator<'s> {
         let last = self.scene.path(plug).last().name;
         let (vector, default) = names::vector_of(last)?;
         let part = vector.parts.iter().position(|names| names.contains(&last))?;
-        Some(self.vector(plug.node, vector, [default; 3], frame)[part])
+        Some(self.component(plug.node, vector, part, default, frame))
     }
 
     /// The elements of an array at a frame: stored ones, and those that are driven.
@@ -214,37 +240,45 @@ impl<'s> Evaluator<'s> {
     /// A vector at a frame, in the units of the file.
     pub fn vector(&self, id: NodeId, vector: Vector3, default: [f64; 3], frame: f64) -> [f64; 3] {
         let stored = self.scene.stored_vector(id, vector, default);
-        let whole = self.scene.source(id, vector.whole, None);
-        [0, 1, 2].map(|part| {
-            let own = self.scene.source(id, vector.parts[part], None);
-            let driven = match (own, whole) {
-                (Some(wire), _) => self.output(wire.from, frame),
-                (None, Some(wire)) => self.part_of(wire, part, frame),
-                _ => None,
-            };
-            driven.unwrap_or(stored[part])
-        })
+        [0, 1, 2].map(|part| self.driven_component(id, vector, part, frame).unwrap_or(stored[part]))
+    }
+
+    /// One component of a vector at a frame, in the units of the file.
+    fn component(&self, id: NodeId, vector: Vector3, part: usize, default: f64, frame: f64) -> f64 {
+        let stored = || self.scene.stored_vector(id, vector, [default; 3])[part];
+        self.driven_component(id, vector, part, frame).unwrap_or_else(stored)
+    }
+
+    fn driven_component(&self, id: NodeId, vector: Vector3, part: usize, frame: f64) -> Option<f64> {
+        if let Some(wire) = self.scene.source(id, vector.parts[part], None) {
+            return self.output(wire.from, frame);
+        }
+        self.part_of(self.scene.source(id, vector.whole, None)?, part, frame)
     }
 
     /// One component of a vector that is connected as a whole.
     pub fn part_of(&self, wire: Wire, part: usize, frame: f64) -> Option<f64> {
-        let node = wire.from.node;
-        let last = self.scene.path(wire.from).last().name;
+        self.once(wire.from, Some(part), frame, || self.computed_part(wire.from, part, frame))
+    }
+
+    fn computed_part(&self, plug: PlugRef, part: usize, frame: f64) -> Option<f64> {
+        let node = plug.node;
+        let last = self.scene.path(plug).last().name;
         if names::is_constraint(self.scene.kind(node)) {
             return Some(self.constrained(node, frame)?[names::driven_by(last)?.0][part]);
         }
         if is_conversion(self.scene.kind(node)) {
             let input = self.scene.source(node, &["i", "input"], None)?;
-            return Some(self.nested(|| self.part_of(input, part, frame))? * self.conversion(node));
+            return Some(self.part_of(input, part, frame)? * self.conversion(node));
         }
         if matches!(self.scene.kind(node), "multiplyDivide" | "reverse" | "pairBlend" | "clamp") {
-            return self.nested(|| self.blended(node, last, part, frame));
+            return self.blended(node, last, part, frame);
         }
         let (vector, default) = names::vector_of_whole(last)?;
         if !matches!(self.scene.kind(node), "transform" | "joint") {
             return None;
         }
-        self.nested(|| Some(self.vector(node, vector, [default; 3], frame)[part]))
+        Some(self.component(node, vector, part, default, frame))
     }
 }
 
