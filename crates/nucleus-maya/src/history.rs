@@ -1,10 +1,12 @@
 //! The mesh of a shape at a frame: stored in the file, or built by its history and its deformers.
 
+use std::collections::HashMap;
+
 use crate::animation::{Evaluator, Matrix};
 use crate::deform;
-use crate::mesh::{Built, Poly, embedded, operators, primitives};
+use crate::mesh::{Budget, Built, Poly, embedded, operators, primitives};
 use crate::omissions::Cause;
-use crate::scene::{NodeId, PlugRef};
+use crate::scene::{NodeId, PlugRef, Wire};
 
 /// Longest history that is followed.
 const MAX_DEPTH: usize = 500;
@@ -12,15 +14,36 @@ const MAX_DEPTH: usize = 500;
 /// Inputs of history nodes.
 const INPUTS: [&[&str]; 3] = [&["ip", "inputPolymesh"], &["ig", "inputGeometry"], &["i", "inMesh"]];
 
+/// Further inputs of meshes: of a union, of a blend shape, of a cloth.
+const MORE_INPUTS: [&str; 5] = ["inputPoly", "igt", "inputGeomTarget", "imsh", "inputMesh"];
+
+/// A history while it is built.
+#[derive(Debug, Default)]
+pub(crate) struct History {
+    /// Nodes that were passed over, and why.
+    pub(crate) omitted: Vec<(String, Cause)>,
+    /// The points that it may still make.
+    pub(crate) budget: Budget,
+    is_deformed: bool,
+    /// The meshes of nodes that feed several inputs.
+    known: HashMap<NodeId, Result<Poly, String>>,
+}
+
+impl History {
+    fn finish(self, mesh: Result<Poly, String>) -> Result<Built, String> {
+        Ok(Built { mesh: mesh?, omitted: self.omitted, is_deformed: self.is_deformed })
+    }
+}
+
 impl Evaluator<'_> {
     /// The mesh of a shape at a frame.
     ///
     /// # Errors
     /// Why it cannot be built.
     pub fn mesh(&self, shape: NodeId, frame: f64) -> Result<Built, String> {
-        let mut built = Built::default();
-        built.mesh = self.shape(shape, frame, 0, &mut built)?;
-        Ok(built)
+        let mut history = History::default();
+        let mesh = self.shape(shape, frame, 0, &mut history);
+        history.finish(mesh)
     }
 
     /// The mesh that flows from a plug: a shape, or a node of a history.
@@ -28,16 +51,16 @@ impl Evaluator<'_> {
     /// # Errors
     /// Why it cannot be built.
     pub fn mesh_from(&self, plug: PlugRef, frame: f64) -> Result<Built, String> {
-        let mut built = Built::default();
-        built.mesh = self.made_by(plug, frame, 0, &mut built)?;
-        Ok(built)
+        let mut history = History::default();
+        let mesh = self.made_by(plug, frame, 0, &mut history);
+        history.finish(mesh)
     }
 
-    fn shape(&self, shape: NodeId, frame: f64, depth: usize, built: &mut Built) -> Result<Poly, String> {
+    fn shape(&self, shape: NodeId, frame: f64, depth: usize, history: &mut History) -> Result<Poly, String> {
         let stored = || embedded::stored(self.scene, shape);
         let mut mesh = match self.scene.source(shape, &["i", "inMesh"], None) {
             None => stored()?.ok_or("the shape stores no points, and no history makes any")?,
-            Some(wire) => match self.made_by(wire.from, frame, depth + 1, built) {
+            Some(wire) => match self.made_by(wire.from, frame, depth + 1, history) {
                 Ok(mesh) => mesh,
                 // The file may hold the result of the history, too.
                 Err(why) => match stored()? {
@@ -45,7 +68,7 @@ impl Evaluator<'_> {
                         let how = format!(
                             "its history is not built ({why}); the mesh that the file stores is taken"
                         );
-                        built.omitted.push((self.scene.name(shape).to_owned(), Cause::Approximate(how)));
+                        history.omitted.push((self.scene.name(shape).to_owned(), Cause::Approximate(how)));
                         mesh
                     }
                     None => return Err(why),
@@ -56,54 +79,92 @@ impl Evaluator<'_> {
         Ok(mesh)
     }
 
-    fn made_by(&self, plug: PlugRef, frame: f64, depth: usize, built: &mut Built) -> Result<Poly, String> {
+    fn made_by(
+        &self,
+        plug: PlugRef,
+        frame: f64,
+        depth: usize,
+        history: &mut History,
+    ) -> Result<Poly, String> {
         if depth > MAX_DEPTH {
             return Err("its history is a cycle, or too long".to_owned());
         }
-        let (id, scene) = (plug.node, self.scene);
+        let id = plug.node;
+        if !self.feeds_several(id) {
+            return self.made_anew(id, frame, depth, history);
+        }
+        if let Some(known) = history.known.get(&id) {
+            // A copy has points, too.
+            known.iter().try_for_each(|mesh| history.budget.take(mesh.weight()))?;
+            return known.clone();
+        }
+        // A history that leads back to this node finds this.
+        history.known.insert(id, Err("its history is a cycle".to_owned()));
+        let mut made = self.made_anew(id, frame, depth, history);
+        if let Ok(mesh) = &made
+            && let Err(why) = history.budget.take(mesh.weight())
+        {
+            made = Err(why);
+        }
+        history.known.insert(id, made.clone());
+        made
+    }
+
+    /// Whether the mesh of a node flows into several inputs.
+    fn feeds_several(&self, id: NodeId) -> bool {
+        let is_mesh = |wire: &Wire| {
+            let name = self.scene.path(wire.to).last().name;
+            INPUTS.iter().any(|names| names.contains(&name)) || MORE_INPUTS.contains(&name)
+        };
+        self.scene.leaving(id).filter(is_mesh).nth(1).is_some()
+    }
+
+    fn made_anew(&self, id: NodeId, frame: f64, depth: usize, history: &mut History) -> Result<Poly, String> {
+        let scene = self.scene;
         let kind = scene.kind(id);
         if kind == "mesh" {
-            return self.shape(id, frame, depth + 1, built);
+            return self.shape(id, frame, depth + 1, history);
         }
-        if let Some(primitive) = primitives::primitive(scene, id) {
+        if let Some(primitive) = primitives::primitive(scene, id, &mut history.budget) {
             return primitive;
         }
         if matches!(kind, "polyUnite" | "polyBoolOp" | "polyCBoolOp") {
             if kind != "polyUnite" {
                 return Err(format!("{kind} is not carried out"));
             }
-            return self.unite(id, frame, depth, built);
+            return self.unite(id, frame, depth, history);
         }
         if kind == "nCloth" {
-            built.omitted.push((
+            history.omitted.push((
                 scene.name(id).to_owned(),
                 Cause::Operator("nCloth as the source of a mesh".to_owned()),
             ));
             let wire = scene.source(id, &["imsh", "inputMesh"], None).ok_or("its cloth has no mesh")?;
-            return self.made_by(wire.from, frame, depth + 1, built);
+            return self.made_by(wire.from, frame, depth + 1, history);
         }
         let input = INPUTS.iter().find_map(|names| scene.source(id, names, None));
         let Some(input) = input else { return Err(format!("{kind} `{}` is not built", scene.name(id))) };
-        let mesh = self.made_by(input.from, frame, depth + 1, built)?;
+        let mesh = self.made_by(input.from, frame, depth + 1, history)?;
         if deform::is_deformer(kind) {
-            built.is_deformed = true;
-            let input = |plug, built: &mut Built| self.made_by(plug, frame, depth + 1, built);
-            return deform::deformed(self, id, frame, mesh, &input, built);
+            history.is_deformed = true;
+            let input = |plug, history: &mut History| self.made_by(plug, frame, depth + 1, history);
+            return deform::deformed(self, id, frame, mesh, &input, history);
         }
-        Ok(match operators::apply(scene, id, mesh) {
+        Ok(match operators::apply(scene, id, mesh, &mut history.budget)? {
             operators::Operation::Done(mesh) => mesh,
             operators::Operation::Unknown(mesh) => {
-                built.omitted.push((scene.name(id).to_owned(), Cause::Operator(kind.to_owned())));
+                history.omitted.push((scene.name(id).to_owned(), Cause::Operator(kind.to_owned())));
                 mesh
             }
         })
     }
 
-    fn unite(&self, id: NodeId, frame: f64, depth: usize, built: &mut Built) -> Result<Poly, String> {
+    fn unite(&self, id: NodeId, frame: f64, depth: usize, history: &mut History) -> Result<Poly, String> {
         let matrices = self.scene.sources(id, &["im", "inputMat"]);
         let mut parts = Vec::new();
         for (index, wire) in self.scene.sources(id, &["ip", "inputPoly"]) {
-            let part = self.made_by(wire.from, frame, depth + 1, built)?;
+            let part = self.made_by(wire.from, frame, depth + 1, history)?;
+            history.budget.take(part.weight())?;
             let own = matrices.iter().find(|(k, _)| *k == index);
             let matrix = own.map_or(Matrix::IDENTITY, |(_, wire)| self.world(wire.from.node, frame));
             parts.push((part, matrix));
@@ -112,6 +173,68 @@ impl Evaluator<'_> {
             Err("polyUnite has no input".to_owned())
         } else {
             Ok(operators::united(&parts))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::ascii::SourceText;
+    use crate::scene::MayaScene;
+
+    /// The mesh of the node `end`, of a plane of 9 points and 4 faces `n0`, with a budget of points.
+    fn built(nodes: &str, points: u64) -> Result<Poly, String> {
+        let plane = "createNode polyPlane -n \"n0\"; setAttr \".sw\" 2; setAttr \".sh\" 2;\n";
+        let text = format!("//Maya ASCII 2022 scene\n{plane}{nodes}connectAttr \"end.out\" \"shape.i\";\n");
+        let scene = MayaScene::of_text(SourceText::from_bytes(Path::new("a.ma"), text.into_bytes()).unwrap())
+            .unwrap();
+        let mut history = History { budget: Budget::of(points), ..History::default() };
+        Evaluator::new(&scene).shape(scene.find("shape").unwrap(), 1.0, 0, &mut history)
+    }
+
+    fn operator(kind: &str, values: &str, picked: &str) -> String {
+        format!(
+            "createNode {kind} -n \"end\"; {values} setAttr \".ics\" -type \"componentList\" 1 \"{picked}[*]\";\n\
+             createNode mesh -n \"shape\"; connectAttr \"n0.out\" \"end.ip\";\n"
+        )
+    }
+
+    #[test]
+    fn an_operator_makes_no_more_points_than_are_left() {
+        // The plane has 9 points, 12 edges and 4 faces.
+        for (kind, values, points) in [
+            ("polySubdFace", "setAttr \".dv\" 1;", 12 + 4),
+            ("polySmoothFace", "setAttr \".dv\" 1;", 12 + 4),
+            ("polyExtrudeFace", "setAttr \".d\" 100;", 9 * 100),
+            ("polyExtrudeFace", "setAttr \".d\" 100; setAttr \".kft\" no;", 4 * 4 * 100),
+            ("polyBevel", "", 4 * 4),
+            ("polySplitVert", "", 4 * 4 - 9),
+        ] {
+            let nodes = operator(kind, values, if kind == "polySplitVert" { "vtx" } else { "f" });
+            assert!(built(&nodes, 9 + points).is_ok(), "{kind}");
+            let why = built(&nodes, 8 + points).unwrap_err();
+            assert!(why.contains("20 million points"), "{kind}: {why}");
+        }
+    }
+
+    #[test]
+    fn unions_of_a_mesh_with_itself_are_refused_when_they_grow_too_large() {
+        // Points merge, but faces double.
+        for between in ["polyNormal", "polyMergeVert"] {
+            let mut nodes = String::from("createNode mesh -n \"shape\";\n");
+            for k in 1..=40 {
+                let (before, name) = (k - 1, if k == 40 { "end".to_owned() } else { format!("n{k}") });
+                nodes += &format!(
+                    "createNode polyUnite -n \"u{k}\"; connectAttr \"n{before}.out\" \"u{k}.ip[0]\";\n\
+                     connectAttr \"n{before}.out\" \"u{k}.ip[1]\"; createNode {between} -n \"{name}\";\n\
+                     connectAttr \"u{k}.out\" \"{name}.ip\";\n"
+                );
+            }
+            let why = built(&nodes, 10_000).unwrap_err();
+            assert!(why.contains("20 million points"), "{between}: {why}");
         }
     }
 }

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use crate::animation::Evaluator;
-use crate::mesh::{Built, Components, InputMesh, Poly};
+use crate::history::History;
+use crate::mesh::{Components, InputMesh, Poly};
 use crate::omissions::Cause;
 use crate::scene::{NodeId, Set};
 
@@ -24,12 +25,12 @@ pub(super) fn apply(
     envelope: f64,
     mesh: &mut Poly,
     input: &InputMesh,
-    built: &mut Built,
+    history: &mut History,
 ) {
     let weights = evaluator.elements(id, &["w", "weight"], frame);
     let painted = Painted::of(evaluator, id);
     let mut groups = stored(evaluator, id);
-    for (group, targets) in connected(evaluator, id, mesh, input, built) {
+    for (group, targets) in connected(evaluator, id, mesh, input, history) {
         groups.entry(group).or_default().extend(targets);
     }
     for (group, targets) in &groups {
@@ -111,7 +112,7 @@ fn connected(
     id: NodeId,
     base: &Poly,
     input: &InputMesh,
-    built: &mut Built,
+    history: &mut History,
 ) -> BTreeMap<u32, Targets> {
     let scene = evaluator.scene;
     let mut groups: BTreeMap<u32, Targets> = BTreeMap::new();
@@ -127,17 +128,22 @@ fn connected(
         }
         let is_target = matches!(path.last().name, "igt" | "inputGeomTarget");
         let (Some((group, _)), Some((item, _)), true) = (group, item, is_target) else { continue };
-        match input(wire.from, built) {
+        match input(wire.from, history) {
             Ok(target) if target.points.len() == base.points.len() => {
                 let offset = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|k| b[k] - a[k]);
                 let pairs = base.points.iter().zip(&target.points).map(offset);
-                groups.entry(group).or_default().insert(item, (0..).zip(pairs).collect());
+                // Most targets move few points.
+                let offsets: Offsets = (0..).zip(pairs).filter(|(_, offset)| *offset != [0.0; 3]).collect();
+                match history.budget.take(offsets.len() as u64) {
+                    Ok(()) => drop(groups.entry(group).or_default().insert(item, offsets)),
+                    Err(why) => history.omitted.push((scene.name(id).to_owned(), Cause::Mesh(why))),
+                }
             }
             Ok(_) => {
                 let what = "a target with another number of points".to_owned();
-                built.omitted.push((scene.name(id).to_owned(), Cause::Operator(what)));
+                history.omitted.push((scene.name(id).to_owned(), Cause::Operator(what)));
             }
-            Err(why) => built.omitted.push((scene.name(id).to_owned(), Cause::Mesh(why))),
+            Err(why) => history.omitted.push((scene.name(id).to_owned(), Cause::Mesh(why))),
         }
     }
     groups

@@ -10,7 +10,8 @@ mod blend_shape;
 mod skin_cluster;
 
 use crate::animation::Evaluator;
-use crate::mesh::{Built, InputMesh, Poly};
+use crate::history::History;
+use crate::mesh::{InputMesh, Poly};
 use crate::omissions::Cause;
 use crate::scene::NodeId;
 
@@ -48,21 +49,21 @@ pub(crate) fn deformed(
     frame: f64,
     mut mesh: Poly,
     input: &InputMesh,
-    built: &mut Built,
+    history: &mut History,
 ) -> Result<Poly, String> {
     let scene = evaluator.scene;
     let envelope = evaluator.number_or(id, &["en", "envelope"], frame, 1.0);
     match scene.kind(id) {
-        "blendShape" => blend_shape::apply(evaluator, id, frame, envelope, &mut mesh, input, built),
+        "blendShape" => blend_shape::apply(evaluator, id, frame, envelope, &mut mesh, input, history),
         "skinCluster" => {
             let method = scene.stored_or(id, &["skm", "skinningMethod"], 0.0);
             if method != 0.0 {
-                built.omitted.push((scene.name(id).to_owned(), Cause::Skinning));
+                history.omitted.push((scene.name(id).to_owned(), Cause::Skinning));
             }
             skin_cluster::apply(evaluator, id, frame, envelope, &mut mesh);
         }
         "tweak" => tweak(evaluator, id, &mut mesh),
-        kind => built.omitted.push((scene.name(id).to_owned(), Cause::Operator(kind.to_owned()))),
+        kind => history.omitted.push((scene.name(id).to_owned(), Cause::Operator(kind.to_owned()))),
     }
     Ok(mesh)
 }

@@ -4,24 +4,36 @@ use std::collections::HashMap;
 
 use crate::scene::{MayaScene, NodeId};
 
+use super::budget::Budget;
 use super::poly::{Components, Poly, sides};
 
 /// Sine of the smallest angle of a corner that is beveled.
 const MIN_SINE: f64 = 1e-3;
 
 /// Bevels a mesh. `None` where the node does more than bevel all edges of a closed mesh with one segment.
-pub(super) fn bevel(scene: &MayaScene, id: NodeId, mesh: &Poly, picked: &Components) -> Option<Poly> {
+///
+/// # Errors
+/// When it makes more points than are left.
+pub(super) fn bevel(
+    scene: &MayaScene,
+    id: NodeId,
+    mesh: &Poly,
+    picked: &Components,
+    budget: &mut Budget,
+) -> Result<Option<Poly>, String> {
     let edges = mesh.edges();
     let all = picked.flags("e", edges.len()).into_iter().all(|picked| picked)
         || picked.flags("f", mesh.face_count()).into_iter().all(|picked| picked);
     if !all || edges.is_empty() || scene.count_or(id, &["sg", "segments"], 1) != 1 {
-        return None;
+        return Ok(None);
     }
     let offset = match scene.switch_or(id, &["oaf", "offsetAsFraction"], true) {
         true => scene.stored_or(id, &["f", "fraction"], 0.5).clamp(0.0, 1.0) * half_of_shortest(mesh, &edges),
         false => scene.stored_or(id, &["o", "offset"], 0.2) * scene.units_of(id).centimetres,
     };
-    beveled(mesh, offset)
+    // A point for each corner of a face.
+    budget.take(mesh.corners.len() as u64)?;
+    Ok(beveled(mesh, offset))
 }
 
 fn half_of_shortest(mesh: &Poly, edges: &[[u32; 2]]) -> f64 {

@@ -1,9 +1,10 @@
 //! Extrusion of faces, together or each for itself.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::scene::{MayaScene, NodeId, Vector3};
 
+use super::budget::Budget;
 use super::poly::{Components, Poly, sides};
 
 const TRANSLATE: Vector3 = Vector3 {
@@ -26,16 +27,25 @@ const PIVOT: Vector3 =
     Vector3 { whole: &["pvt", "pivot"], parts: [&["pvx", "pivotX"], &["pvy", "pivotY"], &["pvz", "pivotZ"]] };
 
 /// Extrudes the picked faces. `None` if the node turns them, which is not carried out.
-pub(super) fn extrude(scene: &MayaScene, id: NodeId, mesh: &Poly, picked: &Components) -> Option<Poly> {
+///
+/// # Errors
+/// When it makes more points than are left.
+pub(super) fn extrude(
+    scene: &MayaScene,
+    id: NodeId,
+    mesh: &Poly,
+    picked: &Components,
+    budget: &mut Budget,
+) -> Result<Option<Poly>, String> {
     let unit = scene.units_of(id).centimetres;
     let length = |vector| scene.stored_vector(id, vector, [0.0; 3]).map(|x| x * unit);
     if scene.stored_vector(id, ROTATE, [0.0; 3]).iter().any(|x| x.abs() > 1e-9) {
-        return None;
+        return Ok(None);
     }
     let thickness = scene.stored_or(id, &["tk", "thickness"], 0.0) * unit;
     let local = length(LOCAL_TRANSLATE);
     if local[0].abs() + local[1].abs() > 1e-9 {
-        return None;
+        return Ok(None);
     }
     let extrusion = Extrusion {
         along_normal: local[2] + thickness,
@@ -47,16 +57,12 @@ pub(super) fn extrude(scene: &MayaScene, id: NodeId, mesh: &Poly, picked: &Compo
     };
     let divisions = scene.count_or(id, &["d", "divisions"], 1).clamp(1, 100);
     let flags = picked.flags("f", mesh.face_count());
-    if scene.switch_or(id, &["kft", "keepFacesTogether"], true) {
-        return Some(extrusion.apply(mesh, &flags, divisions));
-    }
-    let mut made = mesh.clone();
-    for face in (0..flags.len()).filter(|face| flags[*face]) {
-        let mut single = vec![false; made.face_count()];
-        single[face] = true;
-        made = extrusion.apply(&made, &single, divisions);
-    }
-    Some(made)
+    let faces: Vec<usize> = (0..flags.len()).filter(|face| flags[*face]).collect();
+    let groups: Vec<&[usize]> = match scene.switch_or(id, &["kft", "keepFacesTogether"], true) {
+        true => vec![&faces],
+        false => faces.chunks(1).collect(),
+    };
+    extrusion.apply(mesh, &groups, divisions, budget).map(Some)
 }
 
 /// How far the picked faces move. Lengths in centimetres.
@@ -70,13 +76,38 @@ struct Extrusion {
 }
 
 impl Extrusion {
-    /// New points for all points of the picked faces, ring by ring; sides along the border of the faces.
-    fn apply(&self, mesh: &Poly, picked: &[bool], divisions: u32) -> Poly {
-        let faces: Vec<usize> = (0..picked.len()).filter(|face| picked[*face]).collect();
+    /// Extrudes groups of faces. The faces of a group stay together, and no face is in two groups.
+    fn apply(
+        &self,
+        mesh: &Poly,
+        groups: &[&[usize]],
+        divisions: u32,
+        budget: &mut Budget,
+    ) -> Result<Poly, String> {
+        let mut made = Poly {
+            ends: mesh.ends.clone(),
+            corners: mesh.corners.clone(),
+            ..Poly::reshaped(mesh.points.clone())
+        };
+        let sizes = groups.iter().map(|faces| {
+            let points: HashSet<u32> = faces.iter().flat_map(|face| mesh.points_of(*face)).copied().collect();
+            points.len().max(border(mesh, faces).len()) as u64
+        });
+        budget.take(sizes.sum::<u64>() * u64::from(divisions))?;
+        for faces in groups {
+            self.extrude(mesh, faces, divisions, &mut made);
+        }
+        // Points inside the picked faces are on no face any more.
+        made.without_unused_points();
+        Ok(made)
+    }
+
+    /// New points for all points of the faces, ring by ring; sides along the border of the faces.
+    fn extrude(&self, mesh: &Poly, faces: &[usize], divisions: u32, made: &mut Poly) {
         let mut order: Vec<u32> = Vec::new();
         let mut index: HashMap<u32, u32> = HashMap::new();
         let mut normals: Vec<[f64; 3]> = Vec::new();
-        for face in &faces {
+        for face in faces {
             let normal = unit(mesh.normal(*face));
             for &point in mesh.points_of(*face) {
                 let k = *index.entry(point).or_insert_with(|| {
@@ -93,9 +124,8 @@ impl Extrusion {
             .zip(&normals)
             .map(|(point, n)| self.moved(mesh.points[*point as usize], unit(*n), centre))
             .collect();
-        let first = mesh.points.len() as u32;
+        let first = made.points.len() as u32;
         let count = order.len() as u32;
-        let mut made = Poly::reshaped(mesh.points.clone());
         for ring in 1..=divisions {
             let share = f64::from(ring) / f64::from(divisions);
             for (point, end) in order.iter().zip(&ends) {
@@ -107,25 +137,15 @@ impl Extrusion {
             0 => point,
             ring => first + (ring - 1) * count + index[&point],
         };
-        for (face, corners) in mesh.faces().enumerate() {
-            let own: Vec<u32> = corners
-                .iter()
-                .map(|point| if picked[face] { at(*point, divisions) } else { *point })
-                .collect();
-            made.face(&own);
+        for face in faces {
+            let end = mesh.ends[*face] as usize;
+            let start = end - mesh.points_of(*face).len();
+            made.corners[start..end].iter_mut().for_each(|point| *point = at(*point, divisions));
         }
-        let inner: std::collections::HashSet<(u32, u32)> =
-            faces.iter().flat_map(|face| sides(mesh.points_of(*face)).collect::<Vec<_>>()).collect();
-        for face in &faces {
-            for (a, b) in sides(mesh.points_of(*face)).filter(|(a, b)| !inner.contains(&(*b, *a))) {
-                (0..divisions).for_each(|ring| {
-                    made.face(&[at(a, ring), at(b, ring), at(b, ring + 1), at(a, ring + 1)])
-                });
-            }
+        for (a, b) in border(mesh, faces) {
+            (0..divisions)
+                .for_each(|ring| made.face(&[at(a, ring), at(b, ring), at(b, ring + 1), at(a, ring + 1)]));
         }
-        // Points inside the picked faces are on no face any more.
-        made.without_unused_points();
-        made
     }
 
     fn centre(&self, mesh: &Poly, points: &[u32]) -> [f64; 3] {
@@ -143,6 +163,13 @@ impl Extrusion {
     }
 }
 
+/// The sides of faces that no other of them shares.
+fn border(mesh: &Poly, faces: &[usize]) -> Vec<(u32, u32)> {
+    let all = || faces.iter().flat_map(|face| sides(mesh.points_of(*face)));
+    let inner: HashSet<(u32, u32)> = all().collect();
+    all().filter(|(a, b)| !inner.contains(&(*b, *a))).collect()
+}
+
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length > 0.0 { v.map(|x| x / length) } else { v }
@@ -152,20 +179,40 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    #[test]
-    fn an_extruded_plane_is_a_box_without_its_floor() {
-        let made = nucleus_graph::mesh::poly_plane(2.0, 2.0, (2, 2)).unwrap();
+    const UP: Extrusion = Extrusion {
+        along_normal: 3.0,
+        by: [0.0; 3],
+        scale: [1.0; 3],
+        pivot: [0.0; 3],
+        shrink: [1.0; 3],
+        inset: 0.0,
+    };
+
+    fn plane(across: u32) -> Poly {
+        let made = nucleus_graph::mesh::poly_plane(2.0, 2.0, (across, across)).unwrap();
         let mut mesh = Poly::reshaped(made.positions.iter().map(|p| [p.x, p.y, p.z]).collect());
         made.faces.iter().for_each(|face| mesh.face(face));
-        let extrusion = Extrusion {
-            along_normal: 3.0,
-            by: [0.0; 3],
-            scale: [1.0; 3],
-            pivot: [0.0; 3],
-            shrink: [1.0; 3],
-            inset: 0.0,
-        };
-        let whole = extrusion.apply(&mesh, &[true; 4], 2);
+        mesh
+    }
+
+    #[test]
+    fn faces_that_do_not_stay_together_are_numbered_as_one_after_the_other() {
+        let mesh = plane(3);
+        let shrinking = Extrusion { shrink: [0.5; 3], ..UP };
+        let picked = [0, 1, 4, 8];
+        let groups: Vec<&[usize]> = picked.chunks(1).collect();
+        let apart = shrinking.apply(&mesh, &groups, 2, &mut Budget::default()).unwrap();
+        let mut single = mesh;
+        for face in picked {
+            single = shrinking.apply(&single, &[&[face]], 2, &mut Budget::default()).unwrap();
+        }
+        assert_eq!(apart, single);
+        assert_eq!((apart.points.len(), apart.face_count()), (16 + 4 * 8, 9 + 4 * 8));
+    }
+
+    #[test]
+    fn an_extruded_plane_is_a_box_without_its_floor() {
+        let whole = UP.apply(&plane(2), &[&[0, 1, 2, 3]], 2, &mut Budget::default()).unwrap();
         // Nine on top, two rings of eight below; the middle of the first ring and of the plane belong to no face.
         assert_eq!((whole.points.len(), whole.face_count()), (9 + 8 + 8, 4 + 2 * 8));
         let highest = whole.points.iter().map(|p| p[1]).fold(0.0, f64::max);

@@ -7,11 +7,13 @@
 //! | Maya's primitives                                   | `primitives.rs`    |
 //! | operators: extrude, smooth, merge...                | `operators.rs`, `subdivide.rs`, `extrude.rs`, `bevel.rs` |
 //! | the mesh of a shape at a frame                      | `history.rs`, one level up |
+//! | the most points of a history                        | `budget.rs`        |
 //! | a mesh as an OBJ file                               | [`obj_text`]       |
 //!
 //! **Invariant:** points are in the space of the shape, in centimetres, and keep Maya's numbers as far as those are known.
 
 mod bevel;
+mod budget;
 pub(crate) mod embedded;
 mod extrude;
 mod obj;
@@ -20,14 +22,16 @@ mod poly;
 pub(crate) mod primitives;
 mod subdivide;
 
+pub(crate) use budget::Budget;
 pub use obj::obj_text;
 pub use poly::{Built, Components, Poly};
 pub(crate) use primitives::own_primitive;
 
+use crate::history::History;
 use crate::scene::{MayaScene, NodeId, PlugRef};
 
 /// Builds the mesh that flows from a plug, and notes what its history leaves out.
-pub(crate) type InputMesh<'a> = dyn Fn(PlugRef, &mut Built) -> Result<Poly, String> + 'a;
+pub(crate) type InputMesh<'a> = dyn Fn(PlugRef, &mut History) -> Result<Poly, String> + 'a;
 
 /// Whether a creation node makes a Nucleus primitive, along the same axis unless that does not matter.
 pub(crate) fn is_own_primitive(scene: &MayaScene, id: NodeId, any_axis: bool) -> bool {

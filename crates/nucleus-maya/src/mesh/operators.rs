@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::animation::Matrix;
 use crate::scene::{MayaScene, NodeId, Vector3};
 
+use super::budget::Budget;
 use super::poly::{Components, Poly};
 use super::{bevel, embedded, extrude, subdivide};
 
@@ -60,7 +61,15 @@ pub(crate) enum Operation {
 }
 
 /// Applies the operator of a history node to its input.
-pub(crate) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation {
+///
+/// # Errors
+/// When it makes more points than are left.
+pub(crate) fn apply(
+    scene: &MayaScene,
+    id: NodeId,
+    mut mesh: Poly,
+    budget: &mut Budget,
+) -> Result<Operation, String> {
     let kind = scene.kind(id);
     let picked = || {
         scene.value(id, &["ics", "inputComponents"]).map(|values| Components::of(&values)).unwrap_or_default()
@@ -92,26 +101,35 @@ pub(crate) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation 
             let divisions = scene.count_or(id, &["dv", "divisions"], 1).min(6);
             let picked = picked();
             if !subdivide::is_whole(&mesh, &picked) {
-                return Operation::Unknown(mesh);
+                return Ok(Operation::Unknown(mesh));
             }
-            (0..divisions).for_each(|_| mesh = subdivide::smooth(&mesh));
+            for _ in 0..divisions {
+                mesh = subdivide::smooth(&mesh, budget)?;
+            }
         }
         "polySubdFace" => {
             let divisions = scene.count_or(id, &["dv", "divisions"], 1).min(6);
             let mut picked = picked().flags("f", mesh.face_count());
             for _ in 0..divisions {
-                (mesh, picked) = subdivide::split(&mesh, &picked);
+                (mesh, picked) = subdivide::split(&mesh, &picked, budget)?;
             }
         }
-        "polyExtrudeFace" => match extrude::extrude(scene, id, &mesh, &picked()) {
+        "polyExtrudeFace" => match extrude::extrude(scene, id, &mesh, &picked(), budget)? {
             Some(extruded) => mesh = extruded,
-            None => return Operation::Unknown(mesh),
+            None => return Ok(Operation::Unknown(mesh)),
         },
-        "polyBevel" | "polyBevel2" | "polyBevel3" => match bevel::bevel(scene, id, &mesh, &picked()) {
-            Some(beveled) => mesh = beveled,
-            None => return Operation::Unknown(mesh),
-        },
-        "polySplitVert" => mesh = split_points(&mesh, &picked()),
+        "polyBevel" | "polyBevel2" | "polyBevel3" => {
+            match bevel::bevel(scene, id, &mesh, &picked(), budget)? {
+                Some(beveled) => mesh = beveled,
+                None => return Ok(Operation::Unknown(mesh)),
+            }
+        }
+        "polySplitVert" => {
+            // At most a point for each corner of a face.
+            let split = split_points(&mesh, &picked());
+            budget.take((split.points.len() - mesh.points.len()) as u64)?;
+            mesh = split;
+        }
         "polyMergeVert" => {
             let distance = scene.stored_or(id, &["d", "distance"], 1e-4) * unit;
             mesh = merged(&mesh, &picked(), distance);
@@ -120,14 +138,14 @@ pub(crate) fn apply(scene: &MayaScene, id: NodeId, mut mesh: Poly) -> Operation 
             let values = scene.value(id, &["dc", "deleteComponents"]);
             let list = values.map(|values| Components::of(&values)).unwrap_or_default();
             if list.has_other_than("f") {
-                return Operation::Unknown(mesh);
+                return Ok(Operation::Unknown(mesh));
             }
             mesh = without_faces(&mesh, &list.flags("f", mesh.face_count()));
         }
         "polyCloseBorder" => mesh = closed(&mesh),
-        _ => return Operation::Unknown(mesh),
+        _ => return Ok(Operation::Unknown(mesh)),
     }
-    Operation::Done(mesh)
+    Ok(Operation::Done(mesh))
 }
 
 fn reversed(mesh: &Poly, picked: &Components) -> Poly {

@@ -45,6 +45,12 @@ impl Poly {
         self.ends.len()
     }
 
+    /// The points that it counts for in a budget: a face of four corners weighs as much as a point, since a mesh of quads
+    /// has about as many.
+    pub(crate) fn weight(&self) -> u64 {
+        self.points.len().max(self.corners.len() / 4) as u64
+    }
+
     /// The points of a face.
     pub fn points_of(&self, face: usize) -> &[u32] {
         let start = if face == 0 { 0 } else { self.ends[face - 1] as usize };

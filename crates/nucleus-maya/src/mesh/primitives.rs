@@ -10,13 +10,11 @@ use nucleus_graph::mesh::{Primitive, rotation_to_axis};
 
 use crate::scene::{MayaScene, NodeId, Vector3};
 
+use super::budget::Budget;
 use super::poly::Poly;
 
 const AXIS: Vector3 =
     Vector3 { whole: &["ax", "axis"], parts: [&["axx", "axisX"], &["axy", "axisY"], &["axz", "axisZ"]] };
-
-/// Most points of a primitive that this module makes.
-const MAX_POINTS: u64 = 20_000_000;
 
 /// The Nucleus primitive that a creation node makes, if it is one.
 pub(crate) fn own_primitive(scene: &MayaScene, id: NodeId) -> Option<Primitive> {
@@ -60,11 +58,11 @@ pub(crate) fn is_upright(scene: &MayaScene, id: NodeId) -> bool {
 /// The mesh that a creation node makes; `None` if it is no creation node.
 ///
 /// # Errors
-/// When its parameters make no mesh.
-pub(crate) fn primitive(scene: &MayaScene, id: NodeId) -> Option<Result<Poly, String>> {
+/// When its parameters make no mesh, or one of more points than are left.
+pub(crate) fn primitive(scene: &MayaScene, id: NodeId, budget: &mut Budget) -> Option<Result<Poly, String>> {
     let mut made = match own_primitive(scene, id) {
-        Some(own) => of_own(&own),
-        None => other(scene, id)?,
+        Some(own) => of_own(&own, budget),
+        None => other(scene, id, budget)?,
     };
     if let (Ok(mesh), false) = (&mut made, is_upright(scene, id)) {
         turn(mesh, scene.stored_vector(id, AXIS, [0.0, 1.0, 0.0]));
@@ -72,10 +70,8 @@ pub(crate) fn primitive(scene: &MayaScene, id: NodeId) -> Option<Result<Poly, St
     Some(made)
 }
 
-fn of_own(own: &Primitive) -> Result<Poly, String> {
-    if own.size().points > MAX_POINTS {
-        return Err("it has more than 20 million points".to_owned());
-    }
+fn of_own(own: &Primitive, budget: &mut Budget) -> Result<Poly, String> {
+    budget.take(own.size().points)?;
     let surface = own.surface().map_err(|error| error.to_string())?;
     let mut mesh = Poly::reshaped(surface.positions.iter().map(|p| [p.x, p.y, p.z]).collect());
     surface.faces.iter().for_each(|face| mesh.face(face));
@@ -86,7 +82,7 @@ fn of_own(own: &Primitive) -> Result<Poly, String> {
     Ok(mesh)
 }
 
-fn other(scene: &MayaScene, id: NodeId) -> Option<Result<Poly, String>> {
+fn other(scene: &MayaScene, id: NodeId, budget: &mut Budget) -> Option<Result<Poly, String>> {
     let length =
         |names: &[&str], default| scene.stored_or(id, names, default) * scene.units_of(id).centimetres;
     let count = |names: &[&str], default| scene.count_or(id, names, default);
@@ -95,28 +91,36 @@ fn other(scene: &MayaScene, id: NodeId) -> Option<Result<Poly, String>> {
     let (sa, sh) = (count(&["sa", "subdivisionsAxis"], 20).max(3), |default| {
         count(&["sh", "subdivisionsHeight"], default).max(1)
     });
+    let mut take = |rings: f64, round: u32| budget.take((rings * f64::from(round)) as u64);
     let made = match scene.kind(id) {
-        "polyCone" => cone(radius(1.0), height, sa, sh(1)),
-        "polyTorus" => torus(radius(1.0), length(&["sr", "sectionRadius"], 0.5), sa, sh(20).max(3)),
+        "polyCone" => {
+            let levels = sh(1);
+            take(f64::from(levels), sa).map(|()| cone(radius(1.0), height, sa, levels))
+        }
+        "polyTorus" => {
+            let (section, rings) = (length(&["sr", "sectionRadius"], 0.5), sh(20).max(3));
+            take(f64::from(rings), sa).map(|()| torus(radius(1.0), section, sa, rings))
+        }
         "polyPipe" => {
             let (outer, thickness) = (radius(1.0), length(&["t", "thickness"], 0.5));
-            pipe(outer, (outer - thickness).max(outer * 1e-3), height, sa, sh(1))
+            let (inner, levels) = ((outer - thickness).max(outer * 1e-3), sh(1));
+            take(2.0 * f64::from(levels) + 2.0, sa).map(|()| pipe(outer, inner, height, sa, levels))
         }
         "polyHelix" => {
             let coils = scene.stored_or(id, &["c", "coils"], 3.0).clamp(0.01, 1e4);
             let per_coil = count(&["sco", "subdivisionsCoil"], 50).max(1);
             let round = count(&["sa", "subdivisionsAxis"], 8).max(3);
-            let rings = (coils * f64::from(per_coil)).round().max(1.0) as u32;
-            helix([length(&["w", "width"], 2.0), height, radius(0.4)], coils, [round, rings])
+            let rings = (coils * f64::from(per_coil)).round().max(1.0);
+            let size = [length(&["w", "width"], 2.0), height, radius(0.4)];
+            take(rings + 1.0, round).map(|()| helix(size, coils, [round, rings as u32]))
         }
         "polyPlatonicSolid" | "polyPlatonic" => {
-            platonic(radius(1.0), count(&["st", "solidType", "prm", "primitive"], 0))
+            Ok(platonic(radius(1.0), count(&["st", "solidType", "prm", "primitive"], 0)))
         }
         "polyPrism" | "polyPyramid" => return Some(Err(format!("{} is not built", scene.kind(id)))),
         _ => return None,
     };
-    let points = made.points.len() as u64;
-    Some(if points > MAX_POINTS { Err("it has more than 20 million points".to_owned()) } else { Ok(made) })
+    Some(made)
 }
 
 /// A ring of points about y, from +x towards -z, as in Maya.

@@ -4,6 +4,7 @@
 
 use std::collections::HashMap;
 
+use super::budget::Budget;
 use super::poly::{Components, Poly, sides};
 
 /// Whether a list names all faces.
@@ -12,8 +13,11 @@ pub(super) fn is_whole(mesh: &Poly, picked: &Components) -> bool {
 }
 
 /// One step of smooth subdivision. Borders become cubic B-splines.
-pub(super) fn smooth(mesh: &Poly) -> Poly {
-    let plain = split(mesh, &vec![true; mesh.face_count()]).0;
+///
+/// # Errors
+/// When it makes more points than are left.
+pub(super) fn smooth(mesh: &Poly, budget: &mut Budget) -> Result<Poly, String> {
+    let plain = split(mesh, &vec![true; mesh.face_count()], budget)?.0;
     let (points, edges) = (mesh.points.len(), mesh.edges());
     let middle = points + edges.len();
     let mut faces_of: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
@@ -65,7 +69,7 @@ pub(super) fn smooth(mesh: &Poly) -> Poly {
             _ => p,
         };
     }
-    made
+    Ok(made)
 }
 
 /// Sums and counts round a point: middles of faces, of inner edges, of border edges.
@@ -88,7 +92,10 @@ fn mean(points: &[[f64; 3]]) -> [f64; 3] {
 
 /// Splits each picked face into a quad for each of its corners. Neighbours get the new points on their sides. Also
 /// returns which of the new faces come from picked ones.
-pub(super) fn split(mesh: &Poly, picked: &[bool]) -> (Poly, Vec<bool>) {
+///
+/// # Errors
+/// When it makes more points than are left.
+pub(super) fn split(mesh: &Poly, picked: &[bool], budget: &mut Budget) -> Result<(Poly, Vec<bool>), String> {
     let is_picked = |face: usize| picked.get(face).copied().unwrap_or(false);
     let mut wanted: HashMap<(u32, u32), u32> = HashMap::new();
     for (face, corners) in mesh.faces().enumerate().filter(|(face, _)| is_picked(*face)) {
@@ -97,6 +104,8 @@ pub(super) fn split(mesh: &Poly, picked: &[bool]) -> (Poly, Vec<bool>) {
             wanted.insert((a.min(b), a.max(b)), 0);
         });
     }
+    let split_faces = (0..mesh.face_count()).filter(|face| is_picked(*face)).count();
+    budget.take((wanted.len() + split_faces) as u64)?;
     let mut made = Poly::reshaped(mesh.points.clone());
     for [a, b] in mesh.edges() {
         if let Some(number) = wanted.get_mut(&(a.min(b), a.max(b))) {
@@ -131,7 +140,7 @@ pub(super) fn split(mesh: &Poly, picked: &[bool]) -> (Poly, Vec<bool>) {
             }
         }
     }
-    (made, flags)
+    Ok((made, flags))
 }
 
 #[cfg(test)]
@@ -147,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_smooth_cube_has_catmull_and_clarks_points() {
-        let smooth = smooth(&cube());
+        let smooth = smooth(&cube(), &mut Budget::default()).unwrap();
         assert_eq!((smooth.points.len(), smooth.face_count()), (26, 24));
         // Corner: F = 1/3, R = 2/3, n = 3 of a cube with corners at 1: (1/3 + 4/3) / 3 = 5/9.
         for x in smooth.points[0] {
@@ -166,7 +175,7 @@ mod tests {
     fn a_split_face_gives_its_new_points_to_its_neighbours() {
         let mut picked = vec![false; 6];
         picked[0] = true;
-        let (mesh, flags) = split(&cube(), &picked);
+        let (mesh, flags) = split(&cube(), &picked, &mut Budget::default()).unwrap();
         assert_eq!((mesh.points.len(), mesh.face_count()), (13, 9));
         assert_eq!(flags.iter().filter(|flag| **flag).count(), 4);
         let sides_of: usize = mesh.faces().map(<[u32]>::len).sum();
