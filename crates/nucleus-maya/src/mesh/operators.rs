@@ -1,6 +1,6 @@
 //! Operators on meshes that move, merge, split, join or drop points and faces.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
 use crate::animation::Matrix;
 use crate::scene::{MayaScene, NodeId, Vector3};
@@ -264,30 +264,38 @@ fn closed(mesh: &Poly) -> Poly {
     made
 }
 
-/// The closed borders of a mesh, each in the direction in which a face would fill it.
+/// The closed borders of a mesh, each in the direction in which a face would fill it. None has a point twice: where two
+/// borders touch, they are two.
 fn borders(mesh: &Poly) -> Vec<Vec<u32>> {
-    let mut sides: HashMap<(u32, u32), u32> = HashMap::new();
-    for face in mesh.faces() {
-        super::poly::sides(face).for_each(|side| *sides.entry(side).or_default() += 1);
-    }
-    let mut next: std::collections::BTreeMap<u32, u32> = std::collections::BTreeMap::new();
-    for (a, b) in sides.keys() {
-        if !sides.contains_key(&(*b, *a)) {
-            next.insert(*b, *a);
+    let sides = || mesh.faces().flat_map(super::poly::sides);
+    let (all_sides, mut seen) = (sides().collect::<HashSet<_>>(), HashSet::new());
+    // The ends of the border edges that leave each point, in the order of the faces.
+    let mut next: BTreeMap<u32, VecDeque<u32>> = BTreeMap::new();
+    for (a, b) in sides().filter(|(a, b)| !all_sides.contains(&(*b, *a))) {
+        if seen.insert((a, b)) {
+            next.entry(b).or_default().push_back(a);
         }
     }
     let mut all = Vec::new();
-    while let Some((&start, _)) = next.iter().next() {
-        let mut border = vec![start];
-        while let Some(point) = next.remove(&border[border.len() - 1]) {
-            if point == start {
-                break;
+    let mut places: HashMap<u32, usize> = HashMap::new();
+    for start in next.keys().copied().collect::<Vec<_>>() {
+        let (mut path, mut at) = (Vec::new(), Some(start));
+        while let Some(point) = at {
+            if let Some(first) = places.get(&point) {
+                // The path is back at a point: what lies between is a border.
+                let border = path.split_off(*first);
+                for point in &border {
+                    places.remove(point);
+                }
+                if border.len() >= 3 {
+                    all.push(border);
+                }
             }
-            border.push(point);
+            places.insert(point, path.len());
+            path.push(point);
+            at = next.get_mut(&point).and_then(VecDeque::pop_front);
         }
-        if border.len() >= 3 {
-            all.push(border);
-        }
+        places.clear();
     }
     all
 }
@@ -343,6 +351,37 @@ mod tests {
     fn a_deleted_face_takes_its_own_points_along() {
         let left = without_faces(&two_quads(), &[true, false]);
         assert_eq!((left.points.len(), left.points_of(0)), (4, &[0, 1, 3, 2][..]));
+    }
+
+    /// Quads of a checkerboard with three rows of three; those of one colour touch at four points only.
+    fn checkerboard() -> Poly {
+        let points = (0..16u8).map(|k| [f64::from(k % 4), f64::from(k / 4), 0.0]).collect();
+        let mut mesh = Poly::reshaped(points);
+        for first in [0, 2, 5, 8, 10] {
+            mesh.face(&[first, first + 1, first + 5, first + 4]);
+        }
+        mesh
+    }
+
+    #[test]
+    fn borders_that_touch_at_a_point_are_closed_apart_and_in_the_same_order_in_every_run() {
+        let first = borders(&checkerboard());
+        assert!(first.iter().all(|border| border.iter().collect::<HashSet<_>>().len() == border.len()));
+        // Every side of the five quads is in one border, against the direction of its face.
+        let sides = |border: &Vec<u32>| super::super::poly::sides(border).collect::<Vec<_>>();
+        let mut found: Vec<(u32, u32)> = first.iter().flat_map(sides).map(|(a, b)| (b, a)).collect();
+        let mut expected: Vec<(u32, u32)> =
+            checkerboard().faces().flat_map(super::super::poly::sides).collect();
+        found.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(found, expected);
+        // Each run has another seed of its hash maps.
+        assert!((0..50).all(|_| borders(&checkerboard()) == first));
+        // Two triangles at one point.
+        let mut bow_tie = Poly::reshaped(vec![[0.0; 3]; 5]);
+        bow_tie.face(&[0, 1, 2]);
+        bow_tie.face(&[2, 3, 4]);
+        assert_eq!(borders(&bow_tie), [[0, 2, 1], [2, 4, 3]]);
     }
 
     #[test]
