@@ -144,6 +144,7 @@ impl<'s> Importer<'s> {
         }
         if node_type.is_a(&n_particle::N_PARTICLE) && !self.is_own {
             self.place_particles(kept.node, id);
+            self.set_events(kept.node, id);
         }
         Ok(())
     }

@@ -7,6 +7,7 @@
 //! | transforms with pivots, joints, shear                 | `transforms.rs`     |
 //! | meshes: Nucleus primitives, OBJ files, sequences      | `meshes.rs`         |
 //! | recorded results that an object plays                 | `caches.rs`, `tracks.rs` |
+//! | collision events of particles                         | `events.rs`         |
 //! | objects, constraints, fields and their connections    | `wiring.rs`, `constraints.rs` |
 //! | all of it in order                                    | [`Importer`]        |
 //!
@@ -16,6 +17,7 @@
 mod attributes;
 mod caches;
 mod constraints;
+mod events;
 mod importer;
 mod kept;
 mod meshes;
