@@ -679,6 +679,19 @@ fn ten_thousand_faces_are_extruded_apart() {
     assert_eq!(size_of_mesh(&made(nodes)), [101 * 101 + 4 * 10_000, 5 * 10_000]);
 }
 
+#[test]
+fn an_edge_without_a_face_is_not_subdivided() {
+    for operator in ["polySmoothFace", "polySubdFace"] {
+        let read = made(&format!(
+            "createNode mesh -n \"quad\"; setAttr \".vt[0:3]\" 0 0 0 1 0 0 1 0 1 0 0 1;\n\
+             setAttr \".ed[0:4]\" 0 1 0 1 2 0 2 3 0 3 0 0 0 2 0; setAttr \".fc[0]\" -type \"polyFaces\" f 4 0 1 2 3;\n\
+             createNode {operator} -n \"end\"; setAttr \".ics\" -type \"componentList\" 1 \"f[*]\";\n\
+             connectAttr \"quad.o\" \"end.ip\";\n"
+        ));
+        assert_eq!(size_of_mesh(&read), [9, 4], "{operator}");
+    }
+}
+
 /// The values that Maya writes for an event: valid, number of the collision, emit, split, die, random, spread.
 fn event(index: u32, [evv, ecp, eve, evs, evd, evr]: [u32; 6], spread: f64) -> String {
     format!(

@@ -166,7 +166,7 @@ fn stored(evaluator: &Evaluator, id: NodeId) -> BTreeMap<u32, Targets> {
     let mut groups: BTreeMap<u32, Targets> = BTreeMap::new();
     for ((group, item), (points, list)) in found.into_iter().filter(|(_, (points, _))| !points.is_empty()) {
         let numbers = list.numbers("vtx", 1 << 24);
-        let offsets = numbers.into_iter().zip(points.chunks_exact(4).map(|p| [p[0], p[1], p[2]])).collect();
+        let offsets = numbers.zip(points.chunks_exact(4).map(|p| [p[0], p[1], p[2]])).collect();
         groups.entry(group).or_default().insert(item, offsets);
     }
     groups

@@ -214,7 +214,8 @@ pub(super) fn merged(mesh: &Poly, picked: &Components, distance: f64) -> Poly {
         let at = key(*point);
         let mut found: Option<u32> = None;
         for k in 0..27 {
-            let near = [at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1];
+            let beside = |axis: usize, step: i64| at[axis].saturating_add(step - 1);
+            let near = [beside(0, k % 3), beside(1, k / 3 % 3), beside(2, k / 9)];
             for other in grid.get(&near).into_iter().flatten() {
                 let q = mesh.points[*other as usize];
                 let squared: f64 = (0..3).map(|k| (q[k] - point[k]) * (q[k] - point[k])).sum();
@@ -345,6 +346,14 @@ mod tests {
         assert_eq!(split.points_of(0), [0, 1, 4, 3], "the first face keeps its points");
         let again = merged(&split, &all("vtx"), 1e-4);
         assert_eq!((again.points.len(), again.face_count()), (6, 2));
+    }
+
+    #[test]
+    fn points_beyond_all_cells_of_the_grid_are_merged() {
+        let mut mesh = Poly::reshaped([0.0, -1e300, -1e300, 1e300].map(|x| [x, 0.0, 0.0]).to_vec());
+        mesh.face(&[0, 1, 3]);
+        mesh.face(&[0, 3, 2]);
+        assert_eq!(merged(&mesh, &all("vtx"), 1e-4).points.len(), 3);
     }
 
     #[test]

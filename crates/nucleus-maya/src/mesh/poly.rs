@@ -162,13 +162,12 @@ impl Components {
     }
 
     /// The numbers of a kind in the order of the list, of elements below `count`.
-    pub fn numbers(&self, kind: &str, count: usize) -> Vec<u32> {
-        let own = self.ranges.iter().filter(|(own, _)| own == kind);
-        let range = |range: Option<(u32, u32)>| range.unwrap_or((0, count.saturating_sub(1) as u32));
-        own.flat_map(|(_, r)| {
+    pub fn numbers(&self, kind: &str, count: usize) -> impl Iterator<Item = u32> {
+        let own = self.ranges.iter().filter(move |(own, _)| own == kind);
+        let range = move |range: Option<(u32, u32)>| range.unwrap_or((0, count.saturating_sub(1) as u32));
+        own.flat_map(move |(_, r)| {
             let (first, last) = range(*r);
             first..last.saturating_add(1).min(count as u32)
         })
-        .collect()
     }
 }

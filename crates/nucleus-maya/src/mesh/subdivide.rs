@@ -18,12 +18,14 @@ pub(super) fn is_whole(mesh: &Poly, picked: &Components) -> bool {
 /// When it makes more points than are left.
 pub(super) fn smooth(mesh: &Poly, budget: &mut Budget) -> Result<Poly, String> {
     let plain = split(mesh, &vec![true; mesh.face_count()], budget)?.0;
-    let (points, edges) = (mesh.points.len(), mesh.edges());
-    let middle = points + edges.len();
+    let (points, mut edges) = (mesh.points.len(), mesh.edges());
     let mut faces_of: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
     for (face, corners) in mesh.faces().enumerate() {
         sides(corners).for_each(|(a, b)| faces_of.entry((a.min(b), a.max(b))).or_default().push(face));
     }
+    // Edges of no face are not split.
+    edges.retain(|[a, b]| faces_of.contains_key(&(*a.min(b), *a.max(b))));
+    let middle = points + edges.len();
     let of_edge = |[a, b]: [u32; 2]| faces_of.get(&(a.min(b), a.max(b))).map_or(&[][..], Vec::as_slice);
     let mut made = plain.clone();
     // An edge point is the mean of its ends and the middles of its two faces.
