@@ -263,6 +263,21 @@ fn nodes_that_are_their_own_inputs_end_the_chain_of_evaluation() {
     }
 }
 
+#[test]
+fn a_chain_of_long_expressions_is_evaluated() {
+    let sum = format!(".I[0]{}", "+1".repeat(900));
+    let mut nodes = String::new();
+    for k in 0..60 {
+        nodes += &format!(
+            "createNode expression -n \"e{k}\";\nsetAttr \".ixp\" -type \"string\" \".O[0] = {sum};\";\n"
+        );
+        let from = if k == 0 { "curve.o".to_owned() } else { format!("e{}.out[0]", k - 1) };
+        nodes += &format!("connectAttr \"{from}\" \"e{k}.in[0]\";\n");
+    }
+    let read = driven(&format!("{nodes}connectAttr \"e59.out[0]\" \"m.tx\";\n"));
+    near(read.origin("m", 2.0), [2.0 + 60.0 * 900.0, 0.0, 0.0]);
+}
+
 /// The transform of the mesh at frames 1 to 3, in the units of a file.
 fn converted(units: &str, nodes: &str) -> [[[f64; 3]; 2]; 3] {
     let read = read(&format!("currentUnit {units};\n{}{nodes}", mesh("m")));

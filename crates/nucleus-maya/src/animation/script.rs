@@ -112,25 +112,18 @@ impl Scope<'_> {
                 let [condition, yes, no] = &**all;
                 self.value(if self.value(condition)? != 0.0 { yes } else { no })?
             }
-            Term::Two(sign, a, b) => {
-                let [a, b] = [self.value(a)?, self.value(b)?];
-                match *sign {
-                    "+" => a + b,
-                    "-" => a - b,
-                    "*" => a * b,
-                    "/" if b == 0.0 => return Err("it divides by zero".to_owned()),
-                    "/" => a / b,
-                    "%" if b == 0.0 => return Err("it divides by zero".to_owned()),
-                    "%" => a % b,
-                    "<" => truth(a < b),
-                    "<=" => truth(a <= b),
-                    ">" => truth(a > b),
-                    ">=" => truth(a >= b),
-                    "==" => truth(a == b),
-                    "!=" => truth(a != b),
-                    "&&" => truth(a != 0.0 && b != 0.0),
-                    _ => truth(a != 0.0 || b != 0.0),
+            Term::Two(..) => {
+                // Without recursion along a sum: each node of a chain of expressions may have a long one.
+                let (mut first, mut rest) = (term, Vec::new());
+                while let Term::Two(sign, a, b) = first {
+                    rest.push((*sign, &**b));
+                    first = a;
                 }
+                let mut value = self.value(first)?;
+                for (sign, term) in rest.into_iter().rev() {
+                    value = combined(sign, value, self.value(term)?)?;
+                }
+                value
             }
             Term::Call(name, arguments) => {
                 let values: Vec<f64> =
@@ -150,6 +143,25 @@ impl Scope<'_> {
             _ => (self.named)(name).ok_or_else(|| format!("`{name}` has no value")),
         }
     }
+}
+
+fn combined(sign: &str, a: f64, b: f64) -> Result<f64, String> {
+    Ok(match sign {
+        "+" => a + b,
+        "-" => a - b,
+        "*" => a * b,
+        "/" | "%" if b == 0.0 => return Err("it divides by zero".to_owned()),
+        "/" => a / b,
+        "%" => a % b,
+        "<" => truth(a < b),
+        "<=" => truth(a <= b),
+        ">" => truth(a > b),
+        ">=" => truth(a >= b),
+        "==" => truth(a == b),
+        "!=" => truth(a != b),
+        "&&" => truth(a != 0.0 && b != 0.0),
+        _ => truth(a != 0.0 || b != 0.0),
+    })
 }
 
 fn truth(holds: bool) -> f64 {
@@ -283,6 +295,8 @@ mod tests {
         assert!(output(&format!(".O[0] = {}1;", "(".repeat(9000)), 1.0).is_err());
         assert!(output(&format!(".O[0] = {}1;", "-".repeat(9000)), 1.0).is_err());
         assert!(output(&format!(".O[0] = 1{};", "+1".repeat(9000)), 1.0).is_err());
+        let nested = (0..45).fold("1".to_owned(), |inner, _| format!("({inner}{})", "+1".repeat(900)));
+        assert!(output(&format!(".O[0] = {nested};"), 1.0).unwrap_err().contains("too long"));
     }
 
     #[test]

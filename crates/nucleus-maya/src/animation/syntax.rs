@@ -43,9 +43,12 @@ const BINARY: [&[&str]; 6] =
 /// Deepest nesting of terms and blocks.
 const MAX_DEPTH: u32 = 100;
 
+/// Most binary signs of a statement: each makes the tree of a term deeper, which is checked and freed recursively.
+const MAX_SIGNS: u32 = 1000;
+
 /// Parses the text of an expression.
 pub(super) fn parse(text: &str) -> Result<Vec<Step>, String> {
-    let mut parser = Parser { lexemes: lexemes(text)?, at: 0, depth: 0 };
+    let mut parser = Parser { lexemes: lexemes(text)?, at: 0, depth: 0, signs: 0 };
     let mut steps = Vec::new();
     while parser.at < parser.lexemes.len() {
         parser.statement(&mut steps)?;
@@ -115,6 +118,8 @@ struct Parser {
     lexemes: Vec<Lexeme>,
     at: usize,
     depth: u32,
+    /// Binary signs of the present statement.
+    signs: u32,
 }
 
 impl Parser {
@@ -140,6 +145,7 @@ impl Parser {
     }
 
     fn statement(&mut self, steps: &mut Vec<Step>) -> Result<(), String> {
+        self.signs = 0;
         if self.take(";") {
             return Ok(());
         }
@@ -234,13 +240,11 @@ impl Parser {
     fn binary(&mut self, level: usize) -> Result<Term, String> {
         let Some(signs) = BINARY.get(level) else { return self.unary() };
         let mut left = self.binary(level + 1)?;
-        let mut terms = 0;
         while let Some(sign) = signs.iter().copied().find(|sign| self.take(sign)) {
             let right = self.binary(level + 1)?;
             left = Term::Two(sign, Box::new(left), Box::new(right));
-            terms += 1;
-            // A sum of many terms is a deep tree, which is evaluated recursively.
-            if terms > 1000 {
+            self.signs += 1;
+            if self.signs > MAX_SIGNS {
                 return Err("it is too long".to_owned());
             }
         }
