@@ -149,11 +149,6 @@ impl Source {
         self.places.get(name).or_else(|| self.places.get(node)).cloned().unwrap_or_default()
     }
 
-    /// All known places.
-    pub(super) fn places(&self) -> impl Iterator<Item = (&str, &Range<usize>)> {
-        self.places.iter().map(|(name, span)| (name.as_str(), span))
-    }
-
     pub(super) fn note(&mut self, name: String, span: &Range<usize>) {
         self.places.entry(name).or_insert_with(|| span.clone());
     }

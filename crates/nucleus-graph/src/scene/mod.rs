@@ -19,6 +19,7 @@ mod comments;
 pub(crate) mod document;
 pub mod edit;
 mod file_text;
+mod layout;
 mod preset;
 mod read;
 mod short_form;

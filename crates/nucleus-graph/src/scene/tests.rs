@@ -6,6 +6,7 @@ use crate::attributes::{
 };
 use crate::graph::{Channel, Graph, Setting};
 
+mod comments;
 mod files_and_limits;
 mod mistakes;
 mod round_trip;

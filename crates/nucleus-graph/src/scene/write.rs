@@ -10,28 +10,41 @@ use crate::graph::{Channel, Graph, Node, NodeId, Setting};
 
 use super::comments::Comments;
 use super::document::{Record, Scene, TimeSpan};
+use super::layout::with_comments;
 use super::short_form::ShortForm;
+use super::syntax;
 
 /// Writes a scene as RON that reads back to the same scene, to the bit.
 ///
 /// Nodes are in the order of their names, attributes in that of their tables. Connections of creation commands are
 /// left out, because reading makes them again; all others are written one by one.
 pub fn write_scene(scene: &Scene) -> String {
-    write(scene, &Comments::default())
+    write(scene, "")
 }
 
-/// As [`write_scene`], with the comments of the text that the scene was read from.
+/// As [`write_scene`], with the comments of the text that the scene was read from. Each stays with its item: a field of
+/// the scene, a node, an attribute, a check, a connection or an entry of a list. `record: frames` is left out unless it
+/// has a comment.
 pub fn format_scene(scene: &Scene, text: &str) -> String {
-    write(scene, &Comments::of(text, &scene.source))
+    let Ok(source) = syntax::parse(text) else { return write_scene(scene) };
+    for record in ["    record: frames,\n", ""] {
+        let written = write(scene, record);
+        let Ok(root) = syntax::parse(&written) else { break };
+        let comments = Comments::of(text, &source, &root, &scene.graph);
+        if record.is_empty() || comments.are_at(&root, "record") {
+            return with_comments(&written, &root, &comments);
+        }
+    }
+    write_scene(scene)
 }
 
-fn write(scene: &Scene, comments: &Comments) -> String {
+/// Writes a scene, with this line if every frame is recorded.
+fn write(scene: &Scene, record_frames: &str) -> String {
     let TimeSpan { start, end, fps } = scene.time;
     let every = if scene.every == 1.0 { String::new() } else { format!(", every: {}", scene.every) };
-    let head = comments.head.iter().map(|comment| format!("{comment}\n")).collect::<String>();
-    let mut text = format!("{head}Scene(\n    time: (start: {start}, end: {end}, fps: {fps}{every}),\n");
+    let mut text = format!("Scene(\n    time: (start: {start}, end: {end}, fps: {fps}{every}),\n");
     match scene.record {
-        Record::Frames => {}
+        Record::Frames => text.push_str(record_frames),
         Record::Substeps => text.push_str("    record: substeps,\n"),
         Record::Every(n) => {
             let _ = writeln!(text, "    record: every({n}),");
@@ -44,16 +57,13 @@ fn write(scene: &Scene, comments: &Comments) -> String {
         scene.graph.iter().filter(|(id, _)| short.is_written(*id)).collect();
     nodes.sort_by_key(|(_, node)| node.name());
     for (id, node) in nodes {
-        write_node(&scene.graph, id, node, (&short, comments), &mut text);
+        write_node(&scene.graph, id, node, &short, &mut text);
     }
     text.push_str("    },\n");
     write_connections(&short.explicit, &mut text);
     if !scene.checks.is_empty() {
         let checks: Vec<String> = scene.checks.iter().map(ToString::to_string).collect();
         let _ = writeln!(text, "    checks: [{}],", checks.join(", "));
-    }
-    for comment in &comments.tail {
-        let _ = writeln!(text, "    {comment}");
     }
     text + ")\n"
 }
@@ -70,29 +80,18 @@ fn write_connections(pairs: &[[String; 2]], text: &mut String) {
     text.push_str("    ],\n");
 }
 
-fn write_node(graph: &Graph, id: NodeId, node: &Node, forms: (&ShortForm, &Comments), text: &mut String) {
-    let (short, comments) = forms;
+fn write_node(graph: &Graph, id: NodeId, node: &Node, short: &ShortForm, text: &mut String) {
     let (name, node_type) = (quoted(node.name()), node.node_type());
     let rows = node_type.attributes().into_iter();
-    let fields: Vec<(&Attribute, String)> = rows
-        .flat_map(|row| fields_of(graph, id, row, short).into_iter().map(move |field| (row, field)))
-        .collect();
-    let head = format!("{name}: {}(", node_type.name);
-    let indent = "        ";
+    let fields: Vec<String> = rows.flat_map(|row| fields_of(graph, id, row, short)).collect();
+    let head = format!("        {name}: {}(", node_type.name);
     match fields.as_slice() {
-        [] => *text += &comments.line(node.name(), indent, &format!("{head}),")),
-        [(_, field)] if !comments.is_inside(node.name()) => {
-            *text += &comments.line(node.name(), indent, &format!("{head}{field}),"));
-        }
+        [] => *text += &format!("{head}),\n"),
+        [field] => *text += &format!("{head}{field}),\n"),
         fields => {
-            *text += &comments.line(node.name(), indent, &head);
-            let mut last = "";
-            for (row, field) in fields {
-                // The components of a vector have one place together.
-                let place =
-                    if row.name == last { String::new() } else { format!("{}.{}", node.name(), row.name) };
-                *text += &comments.line(&place, "            ", &format!("{field},"));
-                last = row.name;
+            *text += &format!("{head}\n");
+            for field in fields {
+                let _ = writeln!(text, "            {field},");
             }
             *text += "        ),\n";
         }
