@@ -1,7 +1,7 @@
 //! Particles that fill a box or the volume of a closed mesh, in a cubic grid.
 //!
-//! Each particle stands for a cube of the grid's spacing, so a box is filled by as many cubes as fit into it, and the
-//! volume of a liquid is that of the box. A mesh is filled line by line: a line along x crosses a closed surface an even
+//! Each particle stands for a cube of the grid's spacing, so a box is filled by as many cubes as fit into it, in its
+//! middle, and the volume of a liquid is that of these cubes. A mesh is filled line by line: a line along x crosses a closed surface an even
 //! number of times, and every second stretch between crossings is inside. Where the mesh is that of a cloth or a collider, the
 //! particles begin outside of its contact distance: contact would push them out of it at the start, and them and the cloth
 //! away from each other.
@@ -66,11 +66,10 @@ impl Compiler<'_> {
             error.help("`maximumCorner` lies above `minimumCorner` along every axis");
             return None;
         }
-        // A box that is thinner than a cube holds one layer in its middle.
+        // A box that is thinner than a cube holds one layer. The grid is centred in the box.
         let cells = ((high - low) / spacing).map(|cells| (cells + ROUNDING).floor().max(1.0));
         self.claim_filling(node, cells.product() + listed as f64, &n_particle::MAXIMUM_CORNER)?;
-        let thin = (high - low).zip_map(&cells, |length, cells| (length - cells * spacing).min(0.0) / 2.0);
-        let first = low + thin + Vector3::repeat(spacing / 2.0);
+        let first = first_centre(low, high, cells, spacing);
         let [x, y, z] = [0, 1, 2].map(|axis| 0..cells[axis] as u64);
         let places = y.flat_map(|y| {
             z.clone().flat_map({
@@ -159,11 +158,16 @@ impl Compiler<'_> {
     }
 }
 
+/// The centre of the lowest cube of a grid that is centred between two corners.
+fn first_centre(low: Vector3<f64>, high: Vector3<f64>, cells: Vector3<f64>, spacing: f64) -> Vector3<f64> {
+    (low + high) / 2.0 - (cells - Vector3::repeat(1.0)) * (spacing / 2.0)
+}
+
 /// The centres of the cubes of a grid that are inside a closed surface. The grid is centred in the surface's bounds.
 fn fill(surface: &Surface, spacing: f64) -> Vec<Vector3<f64>> {
     let [low, high] = bounding_box(&surface.positions);
     let cells = ((high - low) / spacing).map(|cells| (cells + ROUNDING).floor().max(1.0));
-    let first = (low + high) / 2.0 - (cells - Vector3::repeat(1.0)) * (spacing / 2.0);
+    let first = first_centre(low, high, cells, spacing);
     let [layers, rows] = [1, 2].map(|axis| cells[axis] as usize);
     // The crossings of each line: coordinates along x.
     let mut crossings = vec![Vec::new(); layers * rows];

@@ -110,6 +110,16 @@ fn particles_fill_a_box_with_as_many_cubes_as_fit() {
 }
 
 #[test]
+fn the_grid_of_particles_stands_in_the_middle_of_its_box() {
+    // Of 1, 0.7 and 0.1 scene units, cubes of 0.25 leave 0, 0.2 and -0.15.
+    let fields = "minimumCorner: (0, 1, 0), maximumCorner: (1, 1.7, 0.1), particleSpacing: 0.25";
+    let filled = places(&program(&of_nodes(&format!(r#""n": nucleus(), "q": nParticle({fields})"#), "")), 0);
+    let near = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+    assert_eq!(filled.len(), 8);
+    assert!(near(filled[0], [0.125, 1.225, 0.05]) && near(filled[7], [0.875, 1.475, 0.05]), "{filled:?}");
+}
+
+#[test]
 fn particles_fill_the_volume_of_a_mesh_where_it_stands() {
     let nodes = r#""n": nucleus(), "c": polyCube(width: 2, height: 1, depth: 1, translate: (10, 0, 0)),
         "q": nParticle(fillMesh: "c", radius: 0.125)"#;
