@@ -112,6 +112,7 @@ fn plain(value: &Value, row: &Attribute) -> serde_json::Value {
         Value::Float(number) => json!(number),
         Value::Vector(vector) => json!(vector),
         Value::Text(text) => json!(text),
+        Value::Texts(texts) => json!(texts),
         Value::Ints(numbers) => json!(numbers),
         Value::Floats(numbers) => json!(numbers),
         Value::Vectors(vectors) => json!(vectors),

@@ -108,6 +108,7 @@ fn kind(row: &Attribute) -> String {
         Kind::Vector(_) => "vector".to_owned(),
         Kind::Choice(_) => row.words().into_iter().map(|(_, word)| word).collect::<Vec<_>>().join(" | "),
         Kind::Text => "text".to_owned(),
+        Kind::Texts => "text | list of text".to_owned(),
         Kind::Ints => "list of int".to_owned(),
         Kind::Floats => "list of float".to_owned(),
         Kind::Vectors => "list of vector".to_owned(),

@@ -36,7 +36,7 @@ macro_rules! read_as {
 }
 
 read_as! {
-    bool: Bool, i64: Int, f64: Float, [f64; 3]: Vector, Choice: Choice, String: Text, Vec<u32>: Ints,
+    bool: Bool, i64: Int, f64: Float, [f64; 3]: Vector, Choice: Choice, String: Text, Vec<String>: Texts, Vec<u32>: Ints,
     Vec<f64>: Floats, Vec<[f64; 3]>: Vectors, Cow<'static, [RampPoint]>: Ramp,
     Cow<'static, [ColorPoint]>: ColorRamp, Vec<Component>: Components,
 }
@@ -84,6 +84,11 @@ pub(super) const fn choice(
 /// Text, empty by default.
 pub(super) const fn text(name: &'static str, short: &'static str) -> Key<String> {
     Key::new(name, short, Kind::Text, Some(Value::Text(String::new()))).fixed()
+}
+
+/// Text or a list of texts, empty by default.
+pub(super) const fn texts(name: &'static str, short: &'static str) -> Key<Vec<String>> {
+    Key::new(name, short, Kind::Texts, Some(Value::Texts(Vec::new()))).fixed()
 }
 
 /// Whole numbers, one per element.

@@ -86,6 +86,8 @@ pub enum Kind {
     Choice(&'static [(i32, &'static str)]),
     /// Text.
     Text,
+    /// Text, or a list of texts.
+    Texts,
     /// A list of whole numbers.
     Ints,
     /// A list of numbers.
@@ -117,6 +119,7 @@ impl Kind {
             Self::Vector(_) => "three numbers",
             Self::Choice(_) => "one of its words",
             Self::Text => "text in quotes",
+            Self::Texts => "text in quotes or a list of texts",
             Self::Ints => "a list of whole numbers",
             Self::Floats => "a list of numbers, file(\"...\") or expression(\"...\")",
             Self::Vectors => "a list of vectors or file(\"...\")",
@@ -146,7 +149,7 @@ impl Kind {
             Self::ColorRamp => Some(Data::ColorRamp),
             Self::Node(data) => data,
             Self::Plug(data) => Some(data),
-            Self::Components | Self::Together(_) => None,
+            Self::Texts | Self::Components | Self::Together(_) => None,
         }
     }
 
@@ -165,6 +168,7 @@ impl Kind {
             | (Self::Vectors, Value::Painting(Painting::File(_)))
             | (Self::Vector(_), Value::Vector(_))
             | (Self::Text, Value::Text(_))
+            | (Self::Texts, Value::Texts(_))
             | (Self::Ints, Value::Ints(_))
             | (Self::Floats, Value::Floats(_))
             | (Self::Vectors, Value::Vectors(_))

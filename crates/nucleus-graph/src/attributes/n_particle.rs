@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use super::key::{
-    Plugged, choice, color_ramp, float, floats, int, plug, ramp, text, toggle, vector, vectors,
+    Plugged, choice, color_ramp, float, floats, int, plug, ramp, text, texts, toggle, vector, vectors,
 };
 use super::kind::Data;
 use super::n_base::N_BASE;
@@ -99,8 +99,8 @@ node_table! {
         RUNTIME_EXPRESSION: String = text("runtimeExpression", "runtimeExpression").solved("nucleus_graph::compile::particle_expressions").extension();
     }
     "Collision Events" {
-        /// The nParticle that collision events emit into; this one when left out.
-        EVENT_PARTICLES: String = text("eventParticles", "eventParticles").solved("nucleus_graph::compile::particle_ramps").extension();
+        /// The nParticle that collision events emit into: one for all, or a list with one per event; this one when left out or empty.
+        EVENT_PARTICLES: Vec<String> = texts("eventParticles", "eventParticles").solved("nucleus_graph::compile::particle_ramps").extension();
         /// Probability of each collision event, 0 to 1; 1 when left out.
         EVENT_PROBABILITY: Vec<f64> = floats("eventProbability", "eventProbability").solved("nucleus_core::particles::events").extension();
     }

@@ -18,6 +18,8 @@ pub enum Value {
     Choice(Choice),
     /// Text, such as the path of a file.
     Text(String),
+    /// Texts, such as the names of nodes.
+    Texts(Vec<String>),
     /// Whole numbers, one per element.
     Ints(Vec<u32>),
     /// Numbers, one per point.

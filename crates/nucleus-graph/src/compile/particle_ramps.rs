@@ -300,8 +300,7 @@ impl Compiler<'_> {
             error.help("each list has one number per event, or is left out");
             return None;
         }
-        let target = self.event_target(node)?;
-        let lifespan = Lifespan::new(target.0, &self.start).range();
+        let targets = self.event_targets(node, events)?;
         let number = |list: usize, at: usize, default: f64| lists[list].get(at).copied().unwrap_or(default);
         let event = |at: usize| CollisionEvent {
             count: number(0, at, 0.0) as u32,
@@ -311,23 +310,36 @@ impl Compiler<'_> {
             random: number(4, at, 0.0) != 0.0,
             spread: number(5, at, 0.5),
             probability: number(6, at, 1.0),
-            target: target.1,
-            lifespan,
+            target: targets[at].1,
+            lifespan: Lifespan::new(targets[at].0, &self.start).range(),
         };
         Some((0..events).map(event).collect())
     }
 
-    /// The object that the events of another emit into.
-    fn event_target(&mut self, node: NodeId) -> Option<(NodeId, ClothId)> {
-        let name = self.start.get(node, &n_particle::EVENT_PARTICLES);
+    /// The object that each event of a node emits into; `None` after an error, which is reported.
+    fn event_targets(&mut self, node: NodeId, events: usize) -> Option<Vec<(NodeId, ClothId)>> {
+        let names = self.start.get(node, &n_particle::EVENT_PARTICLES);
+        if names.len() > 1 && names.len() != events {
+            let (name, given) = (self.scene.graph.node(node).name(), names.len());
+            let message = format!("`eventParticles` of `{name}` has {given} values for {events} events");
+            let error = self.findings.error(&self.place(node, &n_particle::EVENT_PARTICLES.row), message);
+            error.help("give one name for all events, or one per event; \"\" is the node itself");
+            return None;
+        }
+        let one = names.first().map_or("", String::as_str);
+        (0..events).map(|at| self.event_target(node, names.get(at).map_or(one, String::as_str))).collect()
+    }
+
+    /// The object of this name, or the node itself for an empty one.
+    fn event_target(&mut self, node: NodeId, name: &str) -> Option<(NodeId, ClothId)> {
         let of = |wanted: NodeId| self.particle_ids.iter().copied().find(|(id, _)| *id == wanted);
-        let target = if name.is_empty() { Some(node) } else { self.scene.graph.find(&name) };
+        let target = if name.is_empty() { Some(node) } else { self.scene.graph.find(name) };
         let found = target.and_then(of);
         if found.is_none() {
             let row = &n_particle::EVENT_PARTICLES.row;
             let message = format!("there are no particles `{name}` in this nucleus to emit into");
             let names = self.particle_ids.iter().map(|(id, _)| self.scene.graph.node(*id).name());
-            let guess = nearest(&name, names);
+            let guess = nearest(name, names);
             self.findings.error(&self.place(node, row), message).did_you_mean(guess);
         }
         found
@@ -365,9 +377,10 @@ fn evaluated(text: &str, places: &[Vector3<f64>]) -> Result<Vec<f64>, String> {
 pub(super) fn is_event_target(graph: &Graph, node: NodeId) -> bool {
     let name = graph.node(node).name();
     graph.of_type(&n_particle::N_PARTICLE).any(|(other, _)| {
-        let target = graph.at(0.0).get(other, &n_particle::EVENT_PARTICLES);
+        let targets = graph.at(0.0).get(other, &n_particle::EVENT_PARTICLES);
+        let is_own = |target: &String| *target == name || target.is_empty() && other == node;
         let emits =
             graph.is_given(other, &particle::EVENT_EMIT) || graph.is_given(other, &particle::EVENT_SPLIT);
-        emits && (target == name || target.is_empty() && other == node)
+        emits && (targets.iter().any(is_own) || targets.is_empty() && other == node)
     })
 }

@@ -142,6 +142,10 @@ fn value_text(value: &Value, row: &Attribute) -> String {
         Value::Vector(vector) => triple(*vector),
         Value::Choice(choice) => word(*choice, row),
         Value::Text(text) => quoted(text),
+        Value::Texts(texts) => match texts.as_slice() {
+            [text] => quoted(text),
+            texts => list(texts.iter().map(|text| quoted(text))),
+        },
         Value::Ints(numbers) => list(numbers.iter().map(ToString::to_string)),
         Value::Floats(numbers) => list(numbers.iter().map(ToString::to_string)),
         Value::Vectors(vectors) => list(vectors.iter().map(|vector| triple(*vector))),

@@ -387,6 +387,33 @@ fn collision_events_are_lists_with_a_number_per_event() {
 }
 
 #[test]
+fn each_event_emits_into_its_own_target() {
+    let nodes = |targets: &str| {
+        format!(
+            r#""n": nucleus(), "q": nParticle(position: [(0, 1, 0)], eventCount: [1, 2], eventEmit: [5, 2],
+            eventParticles: {targets}), "r": nParticle(lifespanMode: constant, lifespan: 2), "s": nParticle()"#
+        )
+    };
+    let targets = |targets: &str| {
+        let program = program(&of_nodes(&nodes(targets), ""));
+        let model = program.model();
+        let events = model.cloths().iter().filter_map(|cloth| cloth.particles.as_ref());
+        let events = events.map(|own| own.events.clone()).find(|events| !events.is_empty()).expect("events");
+        let name = |event: &nucleus_core::CollisionEvent| {
+            (program.objects()[event.target.index()].name.clone(), event.lifespan[0])
+        };
+        events.iter().map(name).collect::<Vec<_>>()
+    };
+    let of = |name: &str, lifespan: f64| (name.to_owned(), lifespan);
+    let forever = targets(r#""s""#)[0].1;
+    assert_eq!(targets(r#"["r", "s"]"#), [of("r", 2.0), of("s", forever)]);
+    assert_eq!(targets(r#"["", "r"]"#), [of("q", forever), of("r", 2.0)]);
+    assert_eq!(targets(r#"["r"]"#), targets(r#""r""#));
+    // Both have room, so neither is said to do nothing.
+    assert_eq!(warnings(&of_nodes(&nodes(r#"["r", "s"]"#), "")), Vec::<String>::new());
+}
+
+#[test]
 fn events_emit_up_to_the_limit_of_their_target() {
     let left = |limit: u32| {
         let nodes = format!(
@@ -425,6 +452,10 @@ fn bad_ramps_lists_and_events_are_errors_that_name_them() {
     assert_eq!(
         errors(r#"eventEmit: [1], eventParticles: "p""#),
         ["there are no particles `p` in this nucleus to emit into"]
+    );
+    assert_eq!(
+        errors(r#"eventEmit: [1, 2, 3], eventParticles: ["q", "q"]"#),
+        ["`eventParticles` of `q` has 2 values for 3 events"]
     );
 }
 

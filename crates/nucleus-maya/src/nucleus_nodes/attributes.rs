@@ -204,7 +204,8 @@ impl Importer<'_> {
                 .map(|points| Setting::Fixed(Value::Ramp(Cow::Owned(points)))),
             Kind::ColorRamp => color_ramp(&self.array_sets(from, &names))
                 .map(|points| Setting::Fixed(Value::ColorRamp(Cow::Owned(points)))),
-            Kind::Components | Kind::Node(_) | Kind::Together(_) | Kind::Plug(_) => None,
+            // Maya's own attributes have no lists of texts.
+            Kind::Texts | Kind::Components | Kind::Node(_) | Kind::Together(_) | Kind::Plug(_) => None,
         }
     }
 

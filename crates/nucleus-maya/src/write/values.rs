@@ -59,6 +59,10 @@ impl Writer<'_> {
             Value::Choice(choice) => format!("\".{name}\" {}", choice.0),
             Value::Vector([x, y, z]) => format!("\".{name}\" -type \"double3\" {x} {y} {z}"),
             Value::Text(text) => format!("\".{name}\" -type \"string\" {}", quoted(text)),
+            Value::Texts(all) => {
+                let list: Vec<String> = all.iter().map(|text| quoted(text)).collect();
+                format!("\".{name}\" -type \"stringArray\" {} {}", all.len(), list.join(" "))
+            }
             Value::Ints(all) if all.is_empty() => return,
             Value::Ints(all) => {
                 let list = numbers(&mut all.iter().map(|x| f64::from(*x)));

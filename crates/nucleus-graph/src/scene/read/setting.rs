@@ -33,6 +33,13 @@ pub(super) fn read(
     }
     let value = match row.kind {
         Kind::Text => AttrValue::Text(text(label, node, findings)?.to_owned()),
+        // A text alone stands for all elements.
+        Kind::Texts if matches!(node.value, Value::Text(_)) => {
+            AttrValue::Texts(vec![text(label, node, findings)?.to_owned()])
+        }
+        Kind::Texts => AttrValue::Texts(list(label, row, node, findings, |node, findings| {
+            text(label, node, findings).map(str::to_owned)
+        })?),
         Kind::Ints => AttrValue::Ints(list(label, row, node, findings, |node, findings| {
             let number = whole_number(label, node, findings)?;
             Some(number.clamp(0.0, f64::from(u32::MAX)) as u32)

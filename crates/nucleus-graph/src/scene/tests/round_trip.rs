@@ -38,6 +38,7 @@ fn values(row: &'static Attribute) -> BoxedStrategy<Value> {
         Kind::Vector(_) => [number(), number(), number()].prop_map(Value::Vector).boxed(),
         Kind::Choice(words) => (0..words.len()).prop_map(|k| Value::Choice(Choice(words[k].0))).boxed(),
         Kind::Text => any::<String>().prop_map(Value::Text).boxed(),
+        Kind::Texts => prop::collection::vec(any::<String>(), 0..3).prop_map(Value::Texts).boxed(),
         Kind::Floats => prop_oneof![
             list(0..4).prop_map(Value::Floats),
             any::<String>().prop_map(|file| Value::Painting(Painting::File(file))),
