@@ -133,9 +133,9 @@ node_table! {
         /// Classic: upper limit of the iterations of each resistance in 1/24 s.
         MAX_ITERATIONS: i64 = int("maxIterations", "mxit", 10000).soft(0.0, 20000.0).solved("nucleus_graph::compile::soft_body");
         /// Share of the distance by which points of other objects move, in a substep, to the outer side of the surface; below 0, to the inner side. For scenes that start with one object inside another.
-        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::contact::depenetration");
+        PUSH_OUT: f64 = float("pushOut", "pou", 0.0).soft(-1.0, 1.0).solved("nucleus_core::contact::push_out");
         /// Largest distance from the surface at which points are pushed out. Default: four times the thickness.
-        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::depenetration");
+        PUSH_OUT_RADIUS: f64 = float("pushOutRadius", "por", 10.0).min(0.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::contact::push_out");
         /// Additional speed of untangling where cloths intersect: 0 is half an edge length in 1/24 s, 1 is ten times that. The values of both sides are added.
         CROSSOVER_PUSH: f64 = float("crossoverPush", "cop", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::contact::cloth::untangling");
         /// Returns points that are on the wrong side. For cloth the solver does so at any value.

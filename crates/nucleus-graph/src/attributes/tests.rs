@@ -31,6 +31,13 @@ fn every_row_has_a_description_and_a_default_within_its_range() {
 }
 
 #[test]
+fn push_out_is_solved_in_the_module_of_its_name() {
+    for key in [&n_base::PUSH_OUT, &n_base::PUSH_OUT_RADIUS] {
+        assert_eq!(key.row.effect, Effect::Solved("nucleus_core::contact::push_out"), "{}", key.row.name);
+    }
+}
+
+#[test]
 fn long_names_and_short_names_are_unique_within_a_type() {
     for node_type in all_types() {
         let mut longs: Vec<_> = node_type.rows.iter().map(|row| row.name).collect();
