@@ -312,8 +312,10 @@ impl Trade {
             let more = if self.wishes().is_refined() { MORE } else { "" };
             output::report(&format!("{said}{more}wrote {}\n", names.join(", ")));
         }
-        if let (Some(apply), Some(point)) = (&self.apply, choice.point()) {
-            self.apply(apply.as_ref(), subject, &point.setting, text)?;
+        match (&self.apply, choice.point()) {
+            (Some(apply), Some(point)) => self.apply(apply.as_ref(), subject, &point.setting, text)?,
+            (Some(_), None) => say!("without a recommendation `--apply` writes nothing"),
+            (None, _) => {}
         }
         let is_requested = self.error.is_some() || self.time.is_some() || !self.bounds.list().is_empty();
         Ok(match choice {

@@ -274,6 +274,31 @@ fn an_error_or_time_that_no_setting_reaches_exits_with_1_and_the_nearest() {
 }
 
 #[test]
+fn particles_whose_motions_diverge_get_no_recommendation_and_no_file() {
+    let folder = folder();
+    // Beads that bounce off each other: the references differ by more than a bead from the first hit on.
+    let beads = r#"Scene(time: (start: 1, end: 24, fps: 24), nodes: {
+        "n": nucleus(spaceScale: 0.01, usePlane: true),
+        "beads": nParticle(position0: [(0, 8, 0), (0.3, 11, 0), (0, 14, 0.3), (0.1, 17, 0)], radius: 1.3,
+            pointMass: 0.003, friction: 0.2, drag: 0, bounce: 0.5)})"#;
+    fs::write(folder.path().join("beads.ron"), beads).unwrap();
+    let sweep = ["trade", "beads.ron", "--evaluations", "6,12", "--substeps", "1"];
+    for error in ["1%", "0.1%"] {
+        let output =
+            nucleus(folder.path(), &[&sweep[..], &["--error", error, "--apply", "other.ron"]].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        let said = stdout(&output);
+        assert!(said.contains("position in no frame"), "{said}");
+        assert!(
+            said.contains("position is not measured: there is no recommendation for an error of"),
+            "{said}"
+        );
+        assert!(!said.contains("stretch") && said.contains("to 1 %: not resolved"), "{said}");
+        assert!(!folder.path().join("other.ron").exists());
+    }
+}
+
+#[test]
 fn a_scene_that_cannot_be_compared_exits_with_1_and_a_reason() {
     let folder = folder();
     scene(folder.path(), 24, "");

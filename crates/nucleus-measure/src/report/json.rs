@@ -39,7 +39,7 @@ struct Recommendation<'a> {
     choice: &'static str,
     /// The setting with its figures.
     point: Option<&'a Point>,
-    /// The quantities in which the references cannot show what is wanted.
+    /// The quantities in which the references cannot show what is wanted, those that are not measured first.
     unresolved: Vec<Quantity>,
     /// In words.
     text: String,
@@ -55,7 +55,10 @@ pub fn json(trade: &Trade, scene: &str, wish: &Wish) -> Value {
     let wanted = Wanted { text: wish_name(wish), error, bounds, ms };
     let unresolved = match wish {
         Wish::Time(_) => Vec::new(),
-        Wish::Error(request) => request.unresolved(&trade.measure).map(|(quantity, _)| quantity).collect(),
+        Wish::Error(request) => {
+            let differ = request.unresolved(&trade.measure).map(|(quantity, _)| quantity);
+            request.unmeasured(&trade.measure).into_iter().chain(differ).collect()
+        }
     };
     let recommendation = Recommendation {
         choice: match choice {

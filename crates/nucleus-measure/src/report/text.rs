@@ -92,7 +92,11 @@ pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
             "the references do not resolve {wanted}; the most accurate setting within their noise: {}",
             costs(point)
         )],
-        Choice::None => return "no setting is usable: there is no recommendation\n".to_owned(),
+        Choice::None => {
+            let missing = not_measured(trade, &wish.request());
+            let reason = missing.unwrap_or_else(|| "no setting is usable".to_owned());
+            return format!("{reason}: there is no recommendation for {wanted}\n");
+        }
     };
     if let Wish::Error(request) = wish {
         lines.extend(unresolved(trade, request));
@@ -126,6 +130,13 @@ fn misses(request: &Request, point: &Point) -> String {
     if all.is_empty() { "nothing".to_owned() } else { all.join(", ") }
 }
 
+/// `position and stretch are not measured`: what a request needs and nothing measures.
+fn not_measured(trade: &Trade, request: &Request) -> Option<String> {
+    let missing: Vec<&str> = request.unmeasured(&trade.measure).into_iter().map(Quantity::name).collect();
+    let verb = if missing.len() == 1 { "is" } else { "are" };
+    (!missing.is_empty()).then(|| format!("{} {verb} not measured", missing.join(" and ")))
+}
+
 /// The quantities in which the references cannot show the wanted error.
 fn unresolved(trade: &Trade, request: &Request) -> Option<String> {
     let name =
@@ -138,6 +149,9 @@ fn unresolved(trade: &Trade, request: &Request) -> Option<String> {
 pub fn time_to(trade: &Trade, error: f64) -> String {
     let wanted = percent(error);
     let request = Request::every(error);
+    if let Some(missing) = not_measured(trade, &request) {
+        return format!("to {wanted}: not resolved, {missing}");
+    }
     if let Some(floor) = request.deciding_floor(&trade.measure) {
         return format!("to {wanted}: not resolved, the references differ by {}", percent(floor));
     }
@@ -297,8 +311,9 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
 /// The quantities and their frames, and the smallest errors that the references resolve.
 fn measure(trade: &Trade) -> String {
     let floor = match trade.reference {
-        Some(_) => format!("; resolved from {}", percent(2.0 * trade.measure.essential_floor())),
-        None => String::new(),
+        Some(_) => trade.measure.essential_floor(),
+        None => None,
     };
+    let floor = floor.map(|floor| format!("; resolved from {}", percent(2.0 * floor))).unwrap_or_default();
     trade.measure.windows(trade.frames) + &floor
 }

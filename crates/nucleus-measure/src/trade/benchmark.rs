@@ -200,6 +200,11 @@ impl Benchmark {
         SettableScene { scene: &self.scene, own: self.own, cloths: &self.cloths }
     }
 
+    /// Whether there is an edge that can be stretched.
+    pub(super) fn has_edges(&self) -> bool {
+        self.edges.iter().any(|edges| edges.iter().next().is_some())
+    }
+
     /// Strain of all cloth in a state: the maximum of each figure over the cloths.
     pub fn strain(&self, points: &[Vector3<f64>]) -> crate::metrics::deformation::Strain {
         let mut all = crate::metrics::deformation::Strain::default();

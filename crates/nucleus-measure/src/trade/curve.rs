@@ -283,7 +283,7 @@ impl Wish {
     }
 
     /// The error that the references have to resolve.
-    pub(super) fn request(&self) -> Request {
+    pub(crate) fn request(&self) -> Request {
         match self {
             Self::Error(request) => request.clone(),
             Self::Time(_) => Request::every(ERROR_OF_TIMES),
@@ -303,7 +303,7 @@ pub enum Choice<'a> {
     Nearest(&'a Point),
     /// The reference uncertainty is too large to decide; this is the most exact setting.
     Unresolved(&'a Point),
-    /// No setting is sound.
+    /// No setting is sound, or what is wanted is not measured.
     None,
 }
 
@@ -322,16 +322,23 @@ impl<'a> Choice<'a> {
 }
 
 /// The cheapest setting that meets a request, or else the most exact. A request that the references do not resolve is
-/// never [`Choice::Found`].
+/// never [`Choice::Found`], and there is no choice where nothing measures what is wanted.
 pub fn for_error<'a>(trade: &'a Trade, request: &Request) -> Choice<'a> {
+    if !request.unmeasured(&trade.measure).is_empty() {
+        return Choice::None;
+    }
     match (request.is_unresolved(&trade.measure), trade.frontier().last()) {
         (true, Some(best)) => Choice::Unresolved(best),
         (_, best) => Choice::of(trade.cheapest(request), best),
     }
 }
 
-/// The most exact setting that takes at most this many milliseconds per frame, or else the cheapest.
+/// The most exact setting that takes at most this many milliseconds per frame, or else the cheapest. None where nothing
+/// measures the motion.
 pub fn for_time(trade: &Trade, ms: f64) -> Choice<'_> {
+    if !Request::every(ERROR_OF_TIMES).unmeasured(&trade.measure).is_empty() {
+        return Choice::None;
+    }
     Choice::of(trade.frontier().take_while(|point| point.ms <= ms).last(), trade.frontier().next())
 }
 
@@ -469,6 +476,20 @@ pub(super) mod tests {
         let position = Component { quantity: Quantity::Position, error: 0.003, floor: 0.004 };
         let tiny = Component { quantity: Quantity::WorstStretch, error: 1e-7, floor: 1e-9 };
         assert_eq!(largest_resolved(&[position, tiny]), (Some(0.008), None));
+    }
+
+    #[test]
+    fn where_nothing_measures_the_motion_nothing_is_recommended() {
+        let energy = |ms| Point { errors: vec![component(Quantity::Energy, 1e-6)], ..point(ms, 1e-6) };
+        let measure = ErrorMeasure { comparable: 0, floors: vec![(Quantity::Energy, 1e-9)] };
+        let beads = Trade { measure, ..trade(vec![energy(1.0), energy(2.0)]) };
+        for error in [0.1, 0.01, 0.001] {
+            assert_eq!(for_error(&beads, &Request::every(error)), Choice::None);
+            assert!(!beads.resolves(error));
+        }
+        assert_eq!(for_time(&beads, 9.0), Choice::None);
+        let only_energy = Request { every: None, bounds: vec![(Quantity::Energy, 0.01)] };
+        assert!(matches!(for_error(&beads, &only_energy), Choice::Found(point) if point.ms == 1.0));
     }
 
     #[test]

@@ -51,6 +51,11 @@ impl Quantity {
         }
     }
 
+    /// Whether it is a strain of edges.
+    fn is_strain(self) -> bool {
+        matches!(self, Self::Stretch | Self::WorstStretch | Self::Strain)
+    }
+
     /// Whether a wanted error that the references do not resolve in this quantity makes the whole recommendation
     /// unresolved. In other quantities the error that the references resolve counts.
     pub(super) fn is_essential(self) -> bool {
@@ -101,7 +106,9 @@ impl ErrorMeasure {
             raw(quantity, comparable, benchmark.fall_energy(), &coarse, &fine.run)
                 .map(|floor| (quantity, floor))
         };
-        Self { comparable, floors: Quantity::AGAINST_REFERENCE.into_iter().filter_map(found).collect() }
+        let can_be = |quantity: &Quantity| benchmark.has_edges() || !quantity.is_strain();
+        let quantities = Quantity::AGAINST_REFERENCE.into_iter().filter(can_be);
+        Self { comparable, floors: quantities.filter_map(found).collect() }
     }
 
     /// The error of a run in each quantity. Empty if the run was not finite.
@@ -124,10 +131,16 @@ impl ErrorMeasure {
         self.floors.iter().find(|(of, _)| *of == quantity).map(|(_, floor)| *floor)
     }
 
-    /// The largest difference of the two references in position and stretch.
-    pub fn essential_floor(&self) -> f64 {
+    /// The largest difference of the two references in position and stretch; `None` if neither is measured.
+    pub fn essential_floor(&self) -> Option<f64> {
         let essential = self.floors.iter().filter(|(quantity, _)| quantity.is_essential());
-        essential.map(|(_, floor)| *floor).fold(0.0, f64::max)
+        essential.map(|(_, floor)| *floor).reduce(f64::max)
+    }
+
+    /// Whether a quantity says where the points are, or how far the cloth gives in to its load.
+    fn shows_motion(&self) -> bool {
+        let shows = |quantity| matches!(quantity, Quantity::Position | Quantity::Shape | Quantity::Strain);
+        self.floors.iter().any(|(quantity, _)| shows(*quantity))
     }
 
     /// The quantities and the frames over which each is compared: `position over frames 2 to 13, stretch over 2 to 24`.
@@ -142,9 +155,20 @@ impl ErrorMeasure {
             _ if last >= end => format!("position over frames {first} to {end}"),
             _ => format!("position over frames {first} to {last} (the references diverge after)"),
         };
-        format!(
-            "{position}, stretch and energy over frames {first} to {end}, shape and silhouette in frame {end}"
-        )
+        let measured = |quantities: &[Quantity]| {
+            let all = quantities.iter().filter(|quantity| self.floor(**quantity).is_some());
+            all.map(|quantity| quantity.name()).collect::<Vec<_>>().join(" and ")
+        };
+        let always = measured(&[Quantity::Stretch, Quantity::Energy]);
+        let last = measured(&[Quantity::Shape, Quantity::Silhouette]);
+        let always = Some(always).filter(|all| !all.is_empty());
+        let last = Some(last).filter(|all| !all.is_empty());
+        let windows = [
+            Some(position),
+            always.map(|all| format!("{all} over frames {first} to {end}")),
+            last.map(|all| format!("{all} in frame {end}")),
+        ];
+        windows.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -229,10 +253,24 @@ impl Request {
             .filter(|(quantity, floor)| self.of(*quantity).is_some_and(|wanted| 2.0 * floor > wanted))
     }
 
+    /// The quantities that the request needs and nothing measures: those that were bounded, and position, where an
+    /// error of every quantity is wanted and neither positions nor shapes can be compared.
+    pub fn unmeasured(&self, measure: &ErrorMeasure) -> Vec<Quantity> {
+        let needs_motion = self.every.is_some() && !measure.shows_motion();
+        let bounded = self.bounds.iter().map(|(quantity, _)| *quantity);
+        let mut missing: Vec<Quantity> =
+            bounded.filter(|quantity| measure.floor(*quantity).is_none()).collect();
+        if needs_motion && !missing.contains(&Quantity::Position) {
+            missing.insert(0, Quantity::Position);
+        }
+        missing
+    }
+
     /// Whether the references cannot show the wanted error in position or stretch, or in a quantity that was bounded.
-    /// Where positions can be compared in no frame, the shape stands for them.
+    /// Where positions can be compared in no frame, the shape stands for them; where nothing shows the motion, every
+    /// error is unresolved.
     pub fn is_unresolved(&self, measure: &ErrorMeasure) -> bool {
-        self.deciding_floor(measure).is_some()
+        !self.unmeasured(measure).is_empty() || self.deciding_floor(measure).is_some()
     }
 
     /// The largest difference of the references in the quantities that make a request unresolved; `None` if none does.
@@ -304,15 +342,37 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn a_request_for_what_is_not_measured_is_unresolved() {
+        // Particles whose motions diverge have no edges and no surface.
+        let beads = ErrorMeasure { comparable: 0, floors: vec![(Quantity::Energy, 1e-9)] };
+        assert_eq!(Request::every(0.01).unmeasured(&beads), [Quantity::Position]);
+        assert!(Request::every(1.0).is_unresolved(&beads));
+        let bound = |quantity| Request { every: None, bounds: vec![(quantity, 0.01)] };
+        assert_eq!(bound(Quantity::Stretch).unmeasured(&beads), [Quantity::Stretch]);
+        assert!(!bound(Quantity::Energy).is_unresolved(&beads));
+        let cloth =
+            ErrorMeasure { comparable: 0, floors: vec![(Quantity::Stretch, 0.0), (Quantity::Shape, 0.0)] };
+        assert_eq!(Request::every(0.01).unmeasured(&cloth), []);
+        assert_eq!(bound(Quantity::Position).unmeasured(&cloth), [Quantity::Position]);
+        assert_eq!(Request::every(0.01).unmeasured(&ErrorMeasure::without_reference()), []);
+    }
+
+    #[test]
     fn the_windows_name_the_frames_of_each_quantity() {
         let measure = |comparable| ErrorMeasure { comparable, floors: vec![(Quantity::Position, 0.0)] };
         assert!(
             measure(12)
                 .windows([1, 24])
-                .starts_with("position over frames 2 to 13 (the references diverge after), stretch")
+                .starts_with("position over frames 2 to 13 (the references diverge after)")
         );
-        assert!(measure(23).windows([1, 24]).starts_with("position over frames 2 to 24, stretch"));
+        assert!(measure(23).windows([1, 24]).starts_with("position over frames 2 to 24"));
         assert!(measure(0).windows([1, 24]).starts_with("position in no frame"));
+        let beads = ErrorMeasure { comparable: 0, floors: vec![(Quantity::Energy, 0.1)] };
+        assert!(
+            beads
+                .windows([1, 24])
+                .ends_with("(the references diverge too early), energy over frames 2 to 24")
+        );
         assert_eq!(ErrorMeasure::without_reference().windows([1, 24]), "strain over frames 2 to 24");
     }
 }

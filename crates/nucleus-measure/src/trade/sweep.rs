@@ -279,7 +279,7 @@ fn validate_references(benchmark: &Benchmark, references: &References) -> Result
         return Err(TradeError::NothingMoves { start: span.start, end: span.end });
     }
     let measure = ErrorMeasure::new(benchmark, &references.coarse, &references.fine, &references.horizon);
-    let uncertainty = measure.essential_floor();
+    let uncertainty = measure.essential_floor().unwrap_or(0.0);
     match is_resolved(uncertainty, MAX_REFERENCE_UNCERTAINTY) {
         true => Ok(()),
         false => {
