@@ -52,6 +52,15 @@ fn smoke_rises_and_widens_with_its_age() {
     assert!(still < 0.5 * high, "{still}, not {high}");
 }
 
+#[test]
+fn the_water_of_the_splash_closes_over_the_ball() {
+    let splash = Particles::of(&changed("liquids/splash", &[]), 29);
+    // The ball stops at a height of 3.1 and has a radius of 1.6; a layer of particles over it has 14.
+    let above = splash.places.iter().filter(|place| place.x.hypot(place.z) < 1.6 && place.y > 4.7);
+    let count = above.count();
+    assert!(count >= 14, "{count} particles are above the ball");
+}
+
 // EVIDENCE: N1.2-10  the opacity of fire is that of its ramp at the age of each particle, and ends at nothing
 #[test]
 fn fire_fades_as_it_ages() {
