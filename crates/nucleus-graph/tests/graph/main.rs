@@ -4,6 +4,7 @@ mod animation;
 mod constraints;
 mod contact;
 mod effects;
+mod filled_particles;
 mod hostile;
 mod independence;
 mod maps;
