@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use mcap::McapError;
 
+use crate::shell::shell_word;
+
 /// Why a file cannot be opened as a cache.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -155,8 +157,9 @@ pub enum RecordError {
     },
     /// A killed run has left a partial cache.
     #[error(
-        "`{0}` is left of a run that was killed; `nucleus recover {0}` saves its frames, `--force` replaces it",
-        path.display()
+        "`{}` is left of a run that was killed; `nucleus recover {}` saves its frames, `--force` replaces it",
+        path.display(),
+        shell_word(path)
     )]
     Unfinished {
         /// The partial cache.

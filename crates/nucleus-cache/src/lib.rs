@@ -65,6 +65,7 @@ mod messages;
 mod read;
 mod run;
 mod selections;
+mod shell;
 mod texture_coordinates;
 mod write;
 
@@ -80,6 +81,7 @@ pub use read::recover::{RecoverError, Recovered};
 pub use read::time_index::TimeSample;
 pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source, SurfaceShape};
 pub use selections::SelectedPoints;
+pub use shell::shell_word;
 pub use texture_coordinates::TextureCoordinates;
 pub use write::frame_recorder::FrameRecorder;
 pub use write::recorder::{Recorded, Recorder};

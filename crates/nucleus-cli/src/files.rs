@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use nucleus_cache::{ObjectKind, OpenError, Playback};
+use nucleus_cache::{ObjectKind, OpenError, Playback, shell_word};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::first_frame_warnings;
 use nucleus_graph::memory::Memory;
@@ -32,8 +32,8 @@ pub fn memory_limit() -> Memory {
 /// The text of a scene file.
 pub fn scene_text(path: &Path) -> Result<String> {
     refuse_maya_scene(path)?;
-    let name = path.display();
-    ensure!(!path.is_file() || !is_cache(path), "`{name}` is a cache: `nucleus play {name}` plays it");
+    let (name, word) = (path.display(), shell_word(path));
+    ensure!(!path.is_file() || !is_cache(path), "`{name}` is a cache: `nucleus play {word}` plays it");
     read_text(path, memory_limit()).map_err(|error| anyhow!(error))
 }
 
@@ -43,7 +43,8 @@ fn refuse_maya_scene(path: &Path) -> Result<()> {
         (path.display(), path.extension().is_some_and(|end| end.eq_ignore_ascii_case("mb")));
     ensure!(
         !is_maya_scene(path) || is_binary,
-        "`{name}` is a Maya scene: `nucleus import {name}` makes a scene (.ron) of it"
+        "`{name}` is a Maya scene: `nucleus import {}` makes a scene (.ron) of it",
+        shell_word(path)
     );
     ensure!(
         !is_binary,
@@ -137,7 +138,7 @@ pub fn named_as_cache(out: &Path) -> Result<&Path> {
         "`{}` does not end with .mcap: the result of a run is a cache; write `-o {}`, and then `nucleus render` or \
          `nucleus export` makes other files of it",
         out.display(),
-        out.with_extension("mcap").display()
+        shell_word(&out.with_extension("mcap"))
     );
     Ok(out)
 }
@@ -154,11 +155,14 @@ pub fn refuse_own_input(input: &Path, out: &Path) -> Result<()> {
 pub fn open_cache(path: &Path) -> Result<Playback> {
     refuse_maya_scene(path)?;
     let (name, is_scene) = (path.display(), path.extension().is_some_and(|end| end == "ron"));
-    ensure!(!is_scene || !path.is_file(), "`{name}` is a scene: `nucleus run {name}` records its cache");
+    ensure!(
+        !is_scene || !path.is_file(),
+        "`{name}` is a scene: `nucleus run {}` records its cache",
+        shell_word(path)
+    );
     Playback::open(path).map_err(|error| match error {
         OpenError::Io { .. } if nucleus_cache::part_path(path).exists() => {
-            let part = nucleus_cache::part_path(path);
-            let part = part.display();
+            let part = shell_word(&nucleus_cache::part_path(path));
             anyhow!(
                 "there is no `{}` yet: its run is still going or was killed; `nucleus play {part}` shows the frames so far, \
                  `nucleus resume {part}` continues it, `nucleus recover {part}` writes them as a complete cache",

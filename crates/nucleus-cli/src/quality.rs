@@ -1,9 +1,10 @@
 //! `--quality` and the store behind it: the setting that `nucleus trade` recommends for an error or a time.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use nucleus_cache::shell_word;
 use nucleus_graph::scene::Scene;
 use nucleus_measure::report;
 use nucleus_measure::result_cache::ResultCache;
@@ -67,7 +68,8 @@ pub fn store(subject: &Benchmark) -> ResultCache {
 pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String, Setting)> {
     let subject = Benchmark::new(scene)?;
     let trade = Trade::load(&store(&subject))?.with_context(|| {
-        format!("there are no stored results for `{name}` and this solver: run `nucleus trade {name}` first")
+        let word = shell_word(Path::new(name));
+        format!("there are no stored results for `{name}` and this solver: run `nucleus trade {word}` first")
     })?;
     let point = match for_error(&trade, &Request::every(wanted)) {
         Choice::Found(point) => point,
@@ -77,7 +79,10 @@ pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String
             report::percent(point.error.unwrap_or_default()),
             point.setting
         ),
-        Choice::None => bail!("no setting of `{name}` is usable: see the output of `nucleus trade {name}`"),
+        Choice::None => bail!(
+            "no setting of `{name}` is recommended: see the output of `nucleus trade {}`",
+            shell_word(Path::new(name))
+        ),
     };
     let error = report::percent(point.error.unwrap_or_default());
     let description = format!(

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use nucleus_cache::{Checkpoint, ObjectInfo, OpenError, Playback, ReadError};
+use nucleus_cache::{Checkpoint, ObjectInfo, OpenError, Playback, ReadError, shell_word};
 use nucleus_core::{Real, RestoreError};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
@@ -170,8 +170,8 @@ impl ResumedRun {
             "a mesh or map that the scene reads, or nucleus itself, has changed since {} was recorded; `nucleus resume {} \
              --scene {} --at FRAME` keeps the frames up to FRAME and continues with the present files",
             self.name(),
-            self.file.display(),
-            self.cache.run().scene_path
+            shell_word(&self.file),
+            shell_word(Path::new(&self.cache.run().scene_path))
         );
         Ok(())
     }

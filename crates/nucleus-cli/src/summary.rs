@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use nucleus_cache::shell_word;
 use nucleus_core::{InvalidInput, MAX_COORDINATE};
 use nucleus_graph::audit::Audit;
 use nucleus_graph::checks::{self, Bound};
@@ -131,15 +132,15 @@ impl Summary<'_> {
         }
         text += &self.ending_line();
         if let Some(part) = &self.unfinished {
-            let (part, cache) = (part.display(), part.with_extension(""));
-            let cache = cache.display();
+            let (word, cache) = (shell_word(part), part.with_extension(""));
+            let (part, cache) = (part.display(), cache.display());
             writeln!(text, "`{cache}` stays as it was; the unfinished run is `{part}`")?;
-            writeln!(text, "continue it with `nucleus resume {part}`, which then replaces `{cache}`")?;
+            writeln!(text, "continue it with `nucleus resume {word}`, which then replaces `{cache}`")?;
         }
         if let Some((path, bytes)) = &self.recorded {
-            let (path, size) = (path.display(), figures::bytes(*bytes));
-            writeln!(text, "recorded in `{path}` ({size})")?;
-            writeln!(text, "watch it with `nucleus play {path}`, draw it with `nucleus render {path}`")?;
+            let (word, size) = (shell_word(path), figures::bytes(*bytes));
+            writeln!(text, "recorded in `{}` ({size})", path.display())?;
+            writeln!(text, "watch it with `nucleus play {word}`, draw it with `nucleus render {word}`")?;
         }
         Ok(text)
     }

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use nucleus_cache::shell_word;
+
 /// Reasons why a wedge cannot be planned, run or collected.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -24,13 +26,13 @@ pub enum WedgeError {
         message: String,
     },
     /// There is no plan.
-    #[error("`{}` holds no plan; `nucleus wedge SCENE --vary node.attribute=... --out {}` makes one", path.display(), path.display())]
+    #[error("`{}` holds no plan; `nucleus wedge SCENE --vary node.attribute=... --out {}` makes one", path.display(), shell_word(path))]
     NoPlan {
         /// The folder.
         path: PathBuf,
     },
     /// There is a plan already.
-    #[error("`{}` holds a plan already: finish it with `nucleus wedge --continue --out {}`, or name another folder", path.display(), path.display())]
+    #[error("`{}` holds a plan already: finish it with `nucleus wedge --continue --out {}`, or name another folder", path.display(), shell_word(path))]
     PlanExists {
         /// The folder.
         path: PathBuf,

@@ -5,6 +5,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Result, ensure};
 use clap::Args;
+use nucleus_cache::shell_word;
 use nucleus_view::LiveRun;
 
 use super::run::Run;
@@ -45,10 +46,11 @@ impl Play {
             false => {
                 let run = Run::of(self.file, self.force);
                 let cache = run.out()?;
-                let path = cache.display();
                 ensure!(
                     self.force || !cache.exists(),
-                    "`{path}` exists: `nucleus play {path}` plays it, `--force` runs the scene again"
+                    "`{}` exists: `nucleus play {}` plays it, `--force` runs the scene again",
+                    cache.display(),
+                    shell_word(&cache)
                 );
                 match run.run()? {
                     ended @ (Outcome::InvalidInput | Outcome::Interrupted | Outcome::Busy) => {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
 use clap::Args;
-use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo};
+use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo, shell_word};
 use nucleus_core::Real;
 use nucleus_graph::checks::Check;
 use nucleus_graph::compile::Program;
@@ -179,12 +179,12 @@ impl Resume {
     /// Advice if a frame that is solved again differs from the recorded one.
     fn help(&self, old: &ResumedRun, copied: i32) -> String {
         let scene =
-            self.scene.as_ref().map(|path| format!(" --scene {}", path.display())).unwrap_or_default();
+            self.scene.as_ref().map(|path| format!(" --scene {}", shell_word(path))).unwrap_or_default();
         format!(
             "the scene, a file that it reads, or nucleus itself has changed; {} is unchanged; `nucleus resume {}{scene} --at \
              {copied}` solves the frames after {copied} again",
             old.name(),
-            old.file.display()
+            shell_word(&old.file)
         )
     }
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use nucleus_cache::shell_word;
 
 use crate::output;
 use crate::process::Outcome;
@@ -69,7 +70,6 @@ impl New {
         if scene.extension().is_none() {
             scene.set_extension("ron");
         }
-        let path = scene.display();
         let mut text = self.template.text().to_owned();
         if self.template == Template::Garment {
             let stem = scene.file_stem().context("the scene has no name")?.to_string_lossy();
@@ -80,7 +80,8 @@ impl New {
         } else {
             write_new(&scene, &text)?;
         }
-        output::report(&format!("wrote `{path}`; run and play it with `nucleus play {path}`\n"));
+        let (path, word) = (scene.display(), shell_word(&scene));
+        output::report(&format!("wrote `{path}`; run and play it with `nucleus play {word}`\n"));
         Ok(Outcome::Success)
     }
 }

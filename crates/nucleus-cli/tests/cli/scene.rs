@@ -20,6 +20,22 @@ fn a_new_scene_can_run_and_replaces_no_file() {
     assert_refused(&again, "`drape.ron` exists; give another name");
 }
 
+#[cfg(unix)]
+#[test]
+fn printed_commands_quote_paths_with_spaces() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("my dir")).expect("a folder");
+    let said = stdout(&nucleus(folder.path(), &["new", "my dir/shot 1.ron", "--template", "flag"]));
+    assert!(said.contains("`nucleus play 'my dir/shot 1.ron'`"), "{said}");
+    let said = stdout(&nucleus(folder.path(), &["run", "my dir/shot 1.ron", "--frames", "2"]));
+    assert!(said.contains("`nucleus play 'shot 1.mcap'`"), "{said}");
+    assert!(said.contains("`nucleus render 'shot 1.mcap'`"), "{said}");
+    let said = stderr(&nucleus(folder.path(), &["run", "shot 1.mcap"]));
+    assert!(said.contains("`nucleus play 'shot 1.mcap'`"), "{said}");
+    let said = stderr(&nucleus(folder.path(), &["run", "my dir/shot 1.ron", "--quality", "1%"]));
+    assert!(said.contains("`nucleus trade 'my dir/shot 1.ron'`"), "{said}");
+}
+
 #[test]
 fn a_formatted_scene_keeps_its_comments_and_is_not_formatted_again() {
     let folder = folder();

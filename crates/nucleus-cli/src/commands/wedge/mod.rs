@@ -1,6 +1,7 @@
 //! `nucleus wedge`: many runs of a scene with different values, on this machine or on a farm.
 
 use anyhow::{Result, anyhow, bail, ensure};
+use nucleus_cache::shell_word;
 use nucleus_wedge::collect::{Collected, collect};
 use nucleus_wedge::{Plan, WedgeFolder, parse_selection};
 use serde_json::json;
@@ -54,7 +55,7 @@ impl Wedge {
             _ => execute(&folder, &plan, &selected, self.jobs(&plan), self.threads)?,
         }
         if process::is_interrupted() {
-            say!("interrupted: `nucleus wedge --continue --out {}` finishes the runs", self.out.display());
+            say!("interrupted: `nucleus wedge --continue --out {}` finishes the runs", shell_word(&self.out));
             return Ok(Outcome::Interrupted);
         }
         match self.run {
@@ -89,7 +90,7 @@ impl Wedge {
                      `nucleus wedge --continue --out {}`",
                     self.out.display(),
                     plan.header.title,
-                    self.out.display()
+                    shell_word(&self.out)
                 );
                 Ok(Some(plan))
             }
