@@ -11,6 +11,8 @@
 //!
 //! **Invariant:** the interpreter is released while anything is solved, read or run.
 
+#![forbid(unsafe_code)]
+
 mod array;
 mod playback;
 mod scene;

@@ -8,6 +8,8 @@
 //!
 //! **Invariant:** no other crate depends on this one.
 
+#![forbid(unsafe_code)]
+
 mod audit;
 pub mod gallery;
 mod recording;

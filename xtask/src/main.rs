@@ -14,6 +14,8 @@
 //! | parser of `ARCHITECTURE.md`                           | [`map`]         |
 //! | files of the repository                               | [`files`]       |
 
+#![forbid(unsafe_code)]
+
 use std::process::ExitCode;
 
 use clap::Parser;

@@ -1,5 +1,5 @@
 //! Checks that no compiler makes: the map fits the tree, attributes name modules that exist, files stay short and import
-//! each other in no circle, nothing names one machine.
+//! each other in no circle, crates forbid unsafe code, nothing names one machine.
 
 mod imports;
 
@@ -18,6 +18,9 @@ const MOST_LINES: usize = 600;
 
 /// Attribute tables may be as long as they are.
 const TABLES: &str = "crates/nucleus-graph/src/attributes/";
+
+/// The only crate with unsafe code.
+const UNSAFE: &str = "crates/nucleus-core";
 
 /// Beginnings of paths that exist on one machine only. (In two halves, so that this file passes.)
 const MACHINE_PATHS: [&str; 3] = [concat!("/wo", "rk/"), concat!("/ro", "ot/"), concat!("/ho", "me/")];
@@ -88,6 +91,7 @@ pub fn problems(root: &Path) -> io::Result<Vec<String>> {
         let src = root.join(&package).join("src");
         let circles = imports::circles(&src)?;
         problems.extend(circles.iter().map(|circle| format!("{package}/src: {circle}")));
+        problems.extend(unsafe_problems(root, &package));
     }
     Ok(problems)
 }
@@ -149,6 +153,18 @@ fn missing_tests(root: &Path) -> io::Result<Vec<String>> {
     }
     let missing = named.iter().filter(|(_, test)| !functions.contains(test));
     Ok(missing.map(|(place, test)| format!("{place}: there is no test `{test}`")).collect())
+}
+
+/// Roots of a crate that do not forbid unsafe code. A lint of the workspace could be allowed again by a crate.
+fn unsafe_problems(root: &Path, package: &str) -> Vec<String> {
+    const LINE: &str = "#![forbid(unsafe_code)]";
+    let roots = ["lib", "main"].map(|root| format!("{package}/src/{root}.rs"));
+    let is_open = |name: &String| {
+        let text = fs::read_to_string(root.join(name));
+        package != UNSAFE && text.is_ok_and(|text| text.lines().all(|line| line != LINE))
+    };
+    let open = roots.into_iter().filter(is_open);
+    open.map(|name| format!("{name}: `{LINE}` is missing; unsafe code is in {UNSAFE} alone")).collect()
 }
 
 /// Attributes of a table that name a module that is not there.

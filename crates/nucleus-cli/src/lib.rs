@@ -14,6 +14,8 @@
 //! | how a scene or a cache is opened, and refused            | `files.rs`               |
 //! | where results are stored between commands                | `quality.rs`             |
 
+#![forbid(unsafe_code)]
+
 mod budget_hints;
 mod commands;
 mod diagnostics;

@@ -25,6 +25,8 @@
 //! **Invariant:** nodes carry data to the solver and never act themselves (§1.1). The same scene gives the
 //! same program for any order of its nodes.
 
+#![forbid(unsafe_code)]
+
 pub mod animation;
 pub mod attributes;
 pub mod audit;

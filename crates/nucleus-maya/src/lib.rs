@@ -22,6 +22,8 @@
 //! **Invariant:** nothing in a file is executed, and a path in a file never leads to writing. Everything that is not
 //! carried over is listed.
 
+#![forbid(unsafe_code)]
+
 pub mod animation;
 pub mod ascii;
 mod deform;

@@ -14,6 +14,8 @@
 //! **Invariant:** this crate does not depend on how a run was solved. It draws any numbers, and the same numbers give the
 //! same bytes on any machine.
 
+#![forbid(unsafe_code)]
+
 mod error;
 mod picture;
 mod player;

@@ -13,7 +13,7 @@ fn tree(page: &str, more: &[(&str, &str)]) -> TempDir {
         ("docs/book.md", "# Book\n"),
         ("target/debug/junk.rs", "junk"),
         ("crates/one/Cargo.toml", "[package]\n"),
-        ("crates/one/src/lib.rs", "mod step;\n"),
+        ("crates/one/src/lib.rs", "#![forbid(unsafe_code)]\nmod step;\n"),
         ("crates/one/src/step.rs", "\n"),
         ("crates/one/src/graph/mod.rs", "\n"),
         ("crates/one/src/graph/node.rs", "\n"),
@@ -34,6 +34,19 @@ fn found(page: &str, more: &[(&str, &str)]) -> Vec<String> {
 #[test]
 fn a_map_that_fits_its_tree_is_tidy() {
     assert_eq!(found(PAGE, &[]), [""; 0]);
+}
+
+#[test]
+fn a_crate_that_allows_unsafe_code_is_found() {
+    let page = PAGE.replace("### `crates/one`", "### `crates/nucleus-core`\n### `crates/one`");
+    let core = [("crates/nucleus-core/Cargo.toml", ""), ("crates/nucleus-core/src/lib.rs", "")];
+    let open = ("crates/one/src/main.rs", "#![deny(unsafe_code)]\nfn main() {}\n");
+    assert_eq!(
+        found(&page, &[core[0], core[1], open]),
+        [
+            "crates/one/src/main.rs: `#![forbid(unsafe_code)]` is missing; unsafe code is in crates/nucleus-core alone"
+        ]
+    );
 }
 
 #[test]
