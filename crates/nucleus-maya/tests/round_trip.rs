@@ -60,6 +60,7 @@ fn setting(row: &'static Attribute, (_, _, a, b, shape): Seed) -> Option<Setting
         Kind::Vector(_) => Some(Setting::Parts([a, b, a + b].map(|x| Channel::Fixed(row.range.clamp(x))))),
         Kind::Text if row.extension => None,
         Kind::Text => fixed(Value::Text(format!("a \"{a}\"\n\\ ü"))),
+        Kind::Texts => fixed(Value::Texts(vec![format!("a \"{a}\"\n"), String::new(), "ü".to_owned()])),
         Kind::Floats => fixed(Value::Floats(vec![a, b, 0.1])),
         Kind::Vectors => fixed(Value::Vectors(vec![[a, b, 1.0], [0.0, -1e-300, b]])),
         Kind::Ramp => {
@@ -300,6 +301,20 @@ fn constraints_by_meaning_are_carried_over_beside_others() {
     let (text, _) = maya_ascii(&scene, "out").unwrap();
     let again = imported(&text).scene;
     assert!(again == scene, "{}", write_scene(&again));
+}
+
+#[test]
+fn targets_of_events_are_carried_over() {
+    for targets in [r#""r""#, r#"["r", "", "q"]"#] {
+        let text = format!(
+            r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {{"n": nucleus(), "r": nParticle(),
+            "q": nParticle(eventEmit: [1, 2, 3], eventParticles: {targets})}})"#
+        );
+        let (scene, _) = read_scene_text(&text, Path::new("a.ron")).unwrap();
+        let (ascii, _) = maya_ascii(&scene, "a").unwrap();
+        let again = write_scene(&imported(&ascii).scene);
+        assert!(again.contains(&format!("eventParticles: {targets}")), "{again}");
+    }
 }
 
 #[test]

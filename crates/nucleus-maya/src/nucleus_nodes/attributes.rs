@@ -204,8 +204,12 @@ impl Importer<'_> {
                 .map(|points| Setting::Fixed(Value::Ramp(Cow::Owned(points)))),
             Kind::ColorRamp => color_ramp(&self.array_sets(from, &names))
                 .map(|points| Setting::Fixed(Value::ColorRamp(Cow::Owned(points)))),
-            // Maya's own attributes have no lists of texts.
-            Kind::Texts | Kind::Components | Kind::Node(_) | Kind::Together(_) | Kind::Plug(_) => None,
+            Kind::Texts => scene
+                .value(from, &names)
+                .map(|values| values.strings().collect::<Vec<_>>())
+                .filter(|texts| !texts.is_empty())
+                .map(|texts| Setting::Fixed(Value::Texts(texts))),
+            Kind::Components | Kind::Node(_) | Kind::Together(_) | Kind::Plug(_) => None,
         }
     }
 

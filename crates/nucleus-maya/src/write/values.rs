@@ -176,6 +176,7 @@ impl Writer<'_> {
             Kind::Bool => "-at \"bool\"",
             Kind::Int => "-at \"long\"",
             Kind::Float => "-at \"double\"",
+            Kind::Texts => "-dt \"stringArray\"",
             _ => "-dt \"string\"",
         };
         let _ = writeln!(self.text, "\taddAttr -ci true -k true -sn \"{0}\" -ln \"{0}\" {kind};", row.name);
