@@ -404,7 +404,7 @@ checkpoint_struct!([R: Real] State<R> {
     ],
 });
 
-encode_struct!([] Chamber { start_volume: f64, volume: f64, amount: f64 });
+encode_struct!([] Chamber { start_volume: f64, volume: f64, amount: f64, torn: f64 });
 
 checkpoint_struct!([R: Real] ColliderContacts<R> {
     columns: [],

@@ -22,6 +22,7 @@ use crate::constraints::link::pass::{begin_links, form_links, relax_links};
 use crate::constraints::link::surface::slide_links;
 use crate::constraints::link::velocity::{apply_link_forces, damp_links, drag_links};
 use crate::constraints::liquid::{LiquidScene, LiquidSolver};
+use crate::constraints::pressure::tear_chambers;
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
 use crate::contact::cloth::pass::{
@@ -231,6 +232,9 @@ fn end_substep<R: CompiledReal>(
     damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
     let scene = (&*model, &contact.collider_states[..]);
     let has_broken = break_links(links, scene, state, frame, [end, substep_length]);
+    if has_broken {
+        tear_chambers(&model.cloths, &mut state.chambers, links);
+    }
     if has_broken || has_lost_links {
         update_pair_filter(contact, (model, state), links, frame, true);
     }

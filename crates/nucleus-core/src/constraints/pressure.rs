@@ -1,6 +1,6 @@
 //! Pressure: the faces of a mesh are pushed along their normals, by hand or by the gas inside.
 //!
-//! Every unconnected part of the mesh is a chamber. With a_i = ∂V/∂x_i, a third of the area vectors round point i, a gauge
+//! Every unconnected part of the mesh is a chamber; a mesh that can tear counts as it was before it was split. With a_i = ∂V/∂x_i, a third of the area vectors round point i, a gauge
 //! pressure p is the force p a_i, so one time step moves point i by w_i a_i λ with λ = h² p. The gas follows the ideal law
 //! at constant temperature, p = K (n V_0 / V - 1), where n V_0 is the volume of its air at ambient pressure and K the bulk
 //! modulus. The step is implicit: λ solves λ = h² p(V + s λ) with s = Σ w_i |a_i|², which has one root and is stable for
@@ -8,7 +8,7 @@
 //!
 //! A boundary loop of the mesh is a hole. Sealed, it is capped: the cap carries the pressure to its rim. Open, the missing
 //! cap leaves a net force -p A (thrust), and air streams through at the speed of Bernoulli's law, plus the air that the
-//! opening runs into.
+//! opening runs into. A torn weld opens a hole of the square of its length, through which the gas leaves.
 //!
 //! A constant pressure on a surface that grows does unlimited work: beyond some size no linear stiffness holds it (a balloon
 //! bursts). So the push of a time step is limited, relative to a sphere of the mesh's rest area: it moves no point farther
@@ -18,12 +18,17 @@
 
 mod holes;
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
+use crate::constraints::link::lists::Links;
 use crate::input::frame::Pressure;
+use crate::input::links::LinkSide;
 use crate::math::{Real, Row4};
+use crate::model::ClothModel;
 use crate::model::blocks::{Blocks, triangles_by_block};
-use crate::model::surface::Surface;
+use crate::model::surface::{Faces, Surface};
 use crate::model::topology::components;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
@@ -95,17 +100,27 @@ struct Sums {
 
 impl PressureModel {
     /// Compiles the chambers of a mesh; `place` gives the solver's row of a point.
-    pub fn new(surface: &Surface, place: impl Fn(u32) -> u32 + Copy, blocks: &Blocks) -> Self {
-        let parts = components(surface);
+    /// The last points are those that were `split_off` others.
+    pub fn new(
+        surface: &Surface,
+        split_off: &[u32],
+        place: impl Fn(u32) -> u32 + Copy,
+        blocks: &Blocks,
+    ) -> Self {
+        let whole = unsplit(surface, split_off);
+        let parts = components(&whole);
         let first = blocks.range(0).start;
         let mut chamber = vec![NO_CHAMBER; surface.positions.len()];
         for (index, part) in (0..).zip(&parts) {
             part.iter().for_each(|&point| chamber[(place(point) - first) as usize] = index);
         }
+        for (point, &original) in (0..surface.positions.len() as u32).rev().zip(split_off.iter().rev()) {
+            chamber[(place(point) - first) as usize] = chamber[(place(original) - first) as usize];
+        }
         // Relative to a point of the chamber, so that one far from the origin loses nothing.
         let origins: Vec<_> = parts.iter().map(|part| surface.positions[part[0] as usize]).collect();
         let (mut areas, mut volumes) = (vec![0.0; parts.len()], vec![0.0; parts.len()]);
-        let holes = boundary_loops(surface).into_iter().map(|corners| {
+        let holes = boundary_loops(&whole).into_iter().map(|corners| {
             let own = chamber[(place(corners[0]) - first) as usize];
             let from_origin = |&point: &u32| surface.positions[point as usize] - origins[own as usize];
             volumes[own as usize] += cap_volume(&corners.iter().map(from_origin).collect::<Vec<_>>());
@@ -134,6 +149,12 @@ impl PressureModel {
         self.holes.is_empty() || matches!(pressure, Pressure::Gas { sealed: true, .. })
     }
 
+    /// The chamber of a row of the cloth, from the first of the state on; `None` where a point has no face.
+    fn chamber_of(&self, cloth: &Range<u32>, row: u32) -> Option<usize> {
+        let chamber = *self.chamber.get((row - cloth.start) as usize)?;
+        (chamber != NO_CHAMBER).then(|| self.first + chamber as usize)
+    }
+
     /// How many chambers there are.
     pub fn chambers(&self) -> usize {
         self.radii.len()
@@ -154,7 +175,7 @@ impl PressureModel {
         self.find_areas(blocks, state, false, pool);
         for (index, sums) in self.sums(blocks, state, false).into_iter().enumerate() {
             let (start_volume, volume) = (self.volumes[index], sums.volume / 3.0);
-            state.chambers[self.first + index] = Chamber { start_volume, volume, amount: -1.0 };
+            state.chambers[self.first + index] = Chamber { start_volume, volume, amount: -1.0, torn: 0.0 };
         }
     }
 
@@ -249,6 +270,32 @@ impl PressureModel {
     }
 }
 
+/// Sets the holes of all chambers to those at the welds that are torn.
+pub fn tear_chambers<R: Real>(cloths: &[ClothModel<R>], chambers: &mut [Chamber], links: &Links<R>) {
+    chambers.iter_mut().for_each(|chamber| chamber.torn = 0.0);
+    let broken = links.constraints.iter().flat_map(|own| own.links.iter().zip(&own.broken));
+    for link in broken.filter(|(_, broken)| **broken).map(|(link, _)| link) {
+        let [LinkSide::Cloth { cloth, points, .. }, LinkSide::Cloth { cloth: other, .. }] = link.sides else {
+            continue;
+        };
+        if cloth != other || link.fold.is_some() {
+            continue;
+        }
+        let model = &cloths[cloth.index()];
+        let at = model.pressure.chamber_of(&model.blocks.rows(), model.place(points[0].index()));
+        at.into_iter().for_each(|at| chambers[at].torn += link.length * link.length);
+    }
+}
+
+/// The mesh as it was before its last points were split off others.
+fn unsplit(surface: &Surface, split_off: &[u32]) -> Surface {
+    let kept = surface.positions.len() - split_off.len();
+    let original = |&point: &u32| split_off.get((point as usize).wrapping_sub(kept)).map_or(point, |&at| at);
+    let mut faces = Faces::default();
+    surface.faces.iter().for_each(|face| faces.push(&face.iter().map(original).collect::<Vec<_>>()));
+    Surface { positions: surface.positions.clone(), faces }
+}
+
 /// What pushes a cloth from within in one time step.
 pub struct PressureFrame<'a> {
     /// The attributes.
@@ -319,12 +366,15 @@ impl Chamber {
                 let gauge = bulk * (gas.amount / after - 1.0);
                 let leak = (1.0 - tightness).clamp(0.0, 1.0) * LEAK * h;
                 let mut flow = pump * h - (self.amount - after / start) * leak / (1.0 + leak);
-                if !sealed {
+                let hole = self.torn + if sealed { 0.0 } else { sums.hole };
+                if hole > 0.0 {
                     let density = (AIR * air_density).max(LEAST_AIR);
                     let speed = (2.0 * gauge.abs() / density).sqrt() * if gauge < 0.0 { -1.0 } else { 1.0 };
                     // No more than equalizes the pressure within the step.
                     let most = (self.amount - after / start).abs();
-                    flow += (-speed * sums.hole * h / start).clamp(-most, most);
+                    flow += (-speed * hole * h / start).clamp(-most, most);
+                }
+                if !sealed {
                     flow += side * sums.inflow * h / start;
                 }
                 self.amount = (self.amount + flow).max(0.0);
@@ -382,5 +432,64 @@ mod tests {
                 assert!(after > 0.0 && (push - expected).abs() <= 1e-9 * (1.0 + bulk), "{bulk} {volume}");
             }
         }
+    }
+
+    /// A mesh whose faces have points of their own, and what these were split off.
+    fn split(surface: &Surface) -> (Surface, Vec<u32>) {
+        let (mut whole, mut split_off) = (surface.clone(), Vec::new());
+        let mut taken = vec![false; surface.positions.len()];
+        let mut faces = Faces::default();
+        for face in surface.faces.iter() {
+            let own = face.iter().map(|&point| {
+                if !std::mem::replace(&mut taken[point as usize], true) {
+                    return point;
+                }
+                whole.positions.push(surface.positions[point as usize]);
+                split_off.push(point);
+                whole.positions.len() as u32 - 1
+            });
+            faces.push(&own.collect::<Vec<_>>());
+        }
+        (Surface { faces, ..whole }, split_off)
+    }
+
+    #[test]
+    fn a_mesh_that_is_split_has_the_chambers_and_holes_of_the_whole_mesh() {
+        let sphere = Surface::sphere(Vector3::new(1.0, 2.0, 3.0), 0.5, 4);
+        let mut open = sphere.clone();
+        open.faces = sphere.faces.iter().skip(2).collect();
+        for mesh in [sphere, open] {
+            let (torn, split_off) = split(&mesh);
+            let of = |surface: &Surface, split_off: &[u32]| {
+                let blocks = Blocks::new(0, surface.positions.len());
+                PressureModel::new(surface, split_off, |point| point, &blocks)
+            };
+            let (whole, torn) = (of(&mesh, &[]), of(&torn, &split_off));
+            assert_eq!((torn.chambers(), torn.holes.len()), (1, whole.holes.len()));
+            assert!(torn.chamber.iter().all(|&chamber| chamber == 0));
+            assert!((torn.volumes[0] - whole.volumes[0]).abs() < 1e-12 && whole.volumes[0] > 0.4);
+            assert!((torn.radii[0] - whole.radii[0]).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn gas_leaves_through_a_tear_until_it_is_at_ambient_pressure() {
+        let pressure =
+            Pressure::Gas { start: 1.0, bulk: 1e3, pump: 0.0, tightness: 1.0, damping: 0.0, sealed: true };
+        let frame = PressureFrame { pressure: &pressure, h: 1e-3, air_density: 1.0, rest_scale: 1.0 };
+        // A rigid chamber of a litre.
+        let still = Sums { volume: 3e-3, ..Sums::default() };
+        let mut chamber = Chamber { start_volume: 1e-3, volume: 1e-3, amount: -1.0, torn: 0.0 };
+        chamber.step(&frame, &still, 0.06);
+        assert_eq!(chamber.amount, 2.0, "whole");
+        chamber.torn = 1e-4;
+        chamber.step(&frame, &still, 0.06);
+        // Bernoulli: a pressure of a kilopascal above ambient streams at (2 p / density)^(1/2) through a square centimetre.
+        let flow = (2.0 * 1e3f64 / AIR).sqrt() * 1e-4 * 1e-3 / 1e-3;
+        assert!((chamber.amount - (2.0 - flow)).abs() < 1e-9, "{}", chamber.amount);
+        for _ in 0..10_000 {
+            chamber.step(&frame, &still, 0.06);
+        }
+        assert!((chamber.amount - 1.0).abs() < 1e-3, "{}", chamber.amount);
     }
 }

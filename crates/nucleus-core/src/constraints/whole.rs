@@ -21,7 +21,9 @@ pub fn prepare<R: Real>(models: &mut [ClothModel<R>], state: &mut State<R>, pool
         if model.pressure.is_on() {
             model.pressure.first = state.chambers.len();
             let chambers = model.pressure.first + model.pressure.chambers();
-            state.chambers.resize(chambers, Chamber { start_volume: 0.0, volume: 0.0, amount: 0.0 });
+            state
+                .chambers
+                .resize(chambers, Chamber { start_volume: 0.0, volume: 0.0, amount: 0.0, torn: 0.0 });
             model.pressure.start(&model.blocks, state, pool);
         }
     }

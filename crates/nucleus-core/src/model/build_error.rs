@@ -34,6 +34,14 @@ pub enum BuildError {
         /// The face.
         face: usize,
     },
+    /// A point is said to be split off one that does not exist, or that was split off itself.
+    #[error("a point is split off point {point}, but only the first {points} points are originals")]
+    BadSplit {
+        /// The point that it is said to be split off.
+        point: u32,
+        /// The number of points that were not split off any.
+        points: usize,
+    },
     /// Woven cloth has not one direction of the warp per face.
     #[error("there are {given} directions of the warp, but {faces} faces")]
     WarpCount {

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use crate::input::{ClothId, ColliderId};
 use crate::model::build_error::BuildError;
 use crate::model::objects::{Cloth, Collider, LinkOrder, Mass};
-use crate::model::refusals::{check_particles, check_start, check_surface, check_warp};
+use crate::model::refusals::{check_particles, check_split, check_start, check_surface, check_warp};
 use crate::model::vertex_maps::VertexMaps;
 
 /// Collects the objects of one solver.
@@ -43,6 +43,7 @@ impl ModelBuilder {
         check_warp(&cloth)?;
         cloth.vertex_maps.check(cloth.surface.positions.len())?;
         check_start(&cloth.start, cloth.surface.positions.len())?;
+        check_split(&cloth)?;
         self.cloths.push(cloth);
         self.link_orders.push(LinkOrder::Sequential);
         Ok(ClothId(self.cloths.len() as u32 - 1))

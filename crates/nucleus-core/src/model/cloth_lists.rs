@@ -104,7 +104,8 @@ impl ListCompiler<'_> {
             self.bend(model);
         }
         if lists.pressure {
-            model.pressure = PressureModel::new(&self.cloth.surface, |point| self.row(point), self.blocks);
+            let Cloth { surface, split_off, .. } = self.cloth;
+            model.pressure = PressureModel::new(surface, split_off, |point| self.row(point), self.blocks);
         }
         if lists.shape {
             self.shape(model);

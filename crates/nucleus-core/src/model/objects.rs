@@ -129,6 +129,9 @@ pub struct Cloth {
     pub start: Start,
     /// Room for particles that are born and die; only without faces.
     pub particles: Option<Particles>,
+    /// Of each of the last points, the point that it was split off, so that the mesh can tear between the two. For the air
+    /// inside, a mesh is whole until it tears.
+    pub split_off: Vec<u32>,
 }
 
 /// An object in which particles are born and die. Its points are the first particles; there may be none.
@@ -188,6 +191,7 @@ impl Cloth {
             vertex_maps: VertexMaps::default(),
             start: Start::default(),
             particles: None,
+            split_off: Vec::new(),
         }
     }
 

@@ -21,6 +21,15 @@ pub fn check_warp(cloth: &Cloth) -> Result<(), BuildError> {
     }
 }
 
+/// Refuses points that are split off one that is no original.
+pub fn check_split(cloth: &Cloth) -> Result<(), BuildError> {
+    let points = cloth.surface.positions.len().saturating_sub(cloth.split_off.len());
+    match cloth.split_off.iter().find(|&&point| point as usize >= points) {
+        Some(&point) => Err(BuildError::BadSplit { point, points }),
+        None => Ok(()),
+    }
+}
+
 /// Refuses a start that lacks a point, or has an invalid value.
 pub fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
     for (column, [one, what]) in

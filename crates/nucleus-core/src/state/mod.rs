@@ -79,6 +79,8 @@ pub struct Chamber {
     pub volume: f64,
     /// Volume of its air at ambient pressure, in start volumes; below zero until the first frame sets it.
     pub amount: f64,
+    /// Area of the holes where it is torn, in m².
+    pub torn: f64,
 }
 
 impl<R: Real> State<R> {

@@ -110,7 +110,8 @@ impl Compiler<'_> {
         let lists = constraint_lists(&self.scene.graph, id, self.program.node, &scales);
         let followed = self.followed_mesh(id, mesh, &vertex_maps.input_attract);
         let (face_count, area) = (faces.len(), area(&surface.faces, &surface.positions));
-        let cloth = Cloth { surface, mass, lists, warp, vertex_maps, start, particles: None };
+        let split_off = tearing.as_ref().map_or_else(Vec::new, |tearing| tearing.twins.clone());
+        let cloth = Cloth { surface, mass, lists, warp, vertex_maps, start, particles: None, split_off };
         let kilograms = match mass {
             _ if !cloth.vertex_maps.mass.is_empty() => cloth.point_masses().iter().sum(),
             Mass::PerPoint(mass) => mass * points as f64,

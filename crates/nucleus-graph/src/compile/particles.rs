@@ -59,7 +59,9 @@ impl Compiler<'_> {
         };
         let warp = Vec::new();
         let mass_of_each = Mass::PerPoint(mass);
-        let cloth = Cloth { surface, mass: mass_of_each, lists, warp, vertex_maps, start, particles };
+        let split_off = Vec::new();
+        let cloth =
+            Cloth { surface, mass: mass_of_each, lists, warp, vertex_maps, start, particles, split_off };
         match self.program.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));
