@@ -171,8 +171,16 @@ impl Bvh {
     }
 
     /// Sets every box from the boxes of the elements.
-    pub fn refit(&mut self, bounds: impl Fn(usize) -> Aabb + Sync) {
-        self.refit_in_tasks(bounds, &ThreadPool::new(1));
+    pub fn refit(&mut self, bounds: impl Fn(usize) -> Aabb) {
+        let Self { triangles, nodes, leaves } = self;
+        let (inner, leaf_nodes) = nodes.split_at_mut(*leaves - 1);
+        let leaf_of = |own: &[u32]| {
+            own.iter().map(|&triangle| bounds(triangle as usize)).fold(Aabb::EMPTY, Aabb::union)
+        };
+        leaf_nodes.iter_mut().zip(triangles.chunks(LEAF_SIZE)).for_each(|(node, own)| *node = leaf_of(own));
+        for node in (0..inner.len()).rev() {
+            nodes[node] = nodes[2 * node + 1].union(nodes[2 * node + 2]);
+        }
     }
 
     /// The same, a task for each of the lower subtrees.

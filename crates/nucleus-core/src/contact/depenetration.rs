@@ -15,13 +15,11 @@ use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::closest_on_triangle;
 use crate::contact::response::DEPENETRATION_SPEED;
 use crate::contact::time_step::ColliderStep;
+use crate::input::validation::MAX_COORDINATE;
 use crate::math::Real;
 use crate::model::ColliderModel;
 
 type Point = Vector3<f64>;
-
-/// Length of the inside-test ray, in metres.
-const RAY_LENGTH: f64 = 1e7;
 
 /// The points of one cloth inside one collider.
 #[derive(Debug, Clone, Default)]
@@ -191,7 +189,7 @@ pub fn exit_face(
 pub fn is_inside(place: Point, collider: &ColliderModel, state: &ColliderState, time: f64) -> bool {
     let mut crossings = 0;
     let from = place - state.origin(time);
-    let ray = Aabb::new(from, from + Point::x() * RAY_LENGTH);
+    let ray = Aabb::new(from, from + Point::x() * (2.0 * MAX_COORDINATE));
     state.bvh.query(&ray, |face| {
         let corners =
             collider.boundary.triangles[face as usize].map(|point| state.point(point, time) - place);

@@ -39,8 +39,7 @@ pub fn push_out<R: Real>(
     frame: &FrameInput,
     time: f64,
 ) {
-    let pushes = |push_out: &PushOut| push_out.share != 0.0 && push_out.radius > 0.0;
-    for at in (0..model.colliders.len()).filter(|&at| pushes(&frame.colliders[at].push_out)) {
+    for at in (0..model.colliders.len()).filter(|&at| frame.colliders[at].push_out.is_on()) {
         let collider = &contact.collider_states[at];
         let faces = model.colliders[at].boundary.triangles.iter();
         let triangles = faces.map(|face| face.map(|point| collider.point(point, time))).collect();
@@ -52,7 +51,7 @@ pub fn push_out<R: Real>(
         (0..model.cloths.len())
             .for_each(|cloth| push_out_of(&model.cloths[cloth], state, contact, &surface, frame, cloth));
     }
-    for at in (0..model.cloths.len()).filter(|&at| pushes(&frame.cloths[at].push_out)) {
+    for at in (0..model.cloths.len()).filter(|&at| frame.cloths[at].push_out.is_on()) {
         let place = |row: u32| Point::from(state.position(row));
         let triangles = model.cloths[at].boundary.triangles.iter().map(|face| face.map(place)).collect();
         let own = &frame.cloths[at];

@@ -89,7 +89,8 @@ impl ThreadPool {
     /// Runs `work(0)` to `work(tasks - 1)`, in any order and in parallel, and returns when all are done.
     ///
     /// # Panics
-    /// With the payload of a task's panic, after all other tasks are done.
+    /// With the payload of a task's panic: at once on the calling thread alone, and with more threads after all other tasks
+    /// are done.
     pub fn parallel_for(&self, tasks: usize, work: impl Fn(usize) + Sync) {
         assert!((tasks as u64) < TASK_MASK, "a loop has at most a million tasks");
         // A task may start a nested loop, which runs on the task's thread.
@@ -318,7 +319,14 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_that_panics_ends_after_all_its_other_tasks() {
+    fn a_panic_on_the_calling_thread_alone_ends_its_loop_and_the_pool_goes_on() {
+        let pool = ThreadPool::new(1);
+        assert_eq!(panicking(&pool, |task| task == 3), (3, Some(3)));
+        assert_eq!(panicking(&pool, |_| false), (64, None));
+    }
+
+    #[test]
+    fn a_loop_of_several_threads_that_panics_ends_after_all_its_other_tasks() {
         let pool = ThreadPool::new(4);
         for panics in [|task| task == 0, |task| task % 2 == 0] {
             for _ in 0..50 {

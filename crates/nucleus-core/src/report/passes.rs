@@ -161,10 +161,19 @@ fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sche
         + of_colliders(|collider| collider.wind_field.casts_shadow());
     let pushes = of_cloths(|cloth| cloth.wind_field.pushes_air())
         + of_colliders(|collider| collider.wind_field.pushes_air());
-    let has_points = |field: Option<PointField>| field.is_some_and(|field| field.is_on());
-    let of_points = frame.cloths.iter().filter(|cloth| has_points(cloth.point_field)).count()
-        + frame.colliders.iter().filter(|collider| has_points(collider.point_field)).count();
-    let points: usize = solver.model.cloths.iter().map(|cloth| cloth.points().len()).sum();
+    let point_fields_of_colliders =
+        of_colliders(|collider| collider.point_field.as_ref().is_some_and(PointField::is_on));
+    let in_point_fields = (0..frame.cloths.len()).map(|cloth| {
+        // The points of an object are in its own field only where they attract each other.
+        let acts = |(at, other): &(usize, &ClothFrame)| {
+            other.point_field.is_some_and(|field| {
+                field.is_on() && if *at == cloth { field.self_attract != 0.0 } else { field.magnitude != 0.0 }
+            })
+        };
+        let fields = point_fields_of_colliders + frame.cloths.iter().enumerate().filter(acts).count();
+        fields * solver.model.cloths[cloth].points().len()
+    });
+    let in_point_fields = in_point_fields.sum();
     let is_on = |field: Option<ForceField>| field.is_some_and(|field| field.is_on());
     let fields_of_colliders = frame.colliders.iter().filter(|collider| is_on(collider.field)).count();
     let in_fields = (0..frame.cloths.len()).map(|cloth| {
@@ -181,7 +190,7 @@ fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sche
         PassCost { name: "gusts", rows: gusty, sweeps: f64::from(schedule.substeps) },
         PassCost { name: "wind shadow", rows: shadows * sum(&windy), sweeps: f64::from(schedule.substeps) },
         PassCost { name: "air push", rows: pushes * sum(&windy), sweeps: f64::from(schedule.substeps) },
-        PassCost { name: "point field", rows: of_points * points, sweeps: f64::from(schedule.substeps) },
+        PassCost { name: "point field", rows: in_point_fields, sweeps: f64::from(schedule.substeps) },
         PassCost { name: "force field", rows: in_fields, sweeps: f64::from(schedule.substeps) },
     ]
 }
@@ -223,9 +232,8 @@ fn contact_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sc
         };
         all.clone().filter(of).map(points).sum()
     };
-    let pushed_out = |push_out: &PushOut| push_out.share != 0.0;
     let pushers = cloths.iter().map(|cloth| &cloth.push_out);
-    let pushes = pushers.chain(frame.colliders.iter().map(|collider| &collider.push_out)).any(pushed_out);
+    let pushes = pushers.chain(frame.colliders.iter().map(|collider| &collider.push_out)).any(PushOut::is_on);
     let collide = rounds(Pass::ColliderContact);
     [
         PassCost {

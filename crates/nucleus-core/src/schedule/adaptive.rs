@@ -8,6 +8,8 @@
 //! contact passes at the end of the step, those beside it do not, and the links between them, then several times too long,
 //! throw points about. Split, each part of the step stretches a link by about its length at most.
 
+use std::cell::OnceCell;
+
 use nalgebra::Vector3;
 
 use crate::constraints::liquid::time_step::splits as liquid_splits;
@@ -42,22 +44,25 @@ pub fn splits<R: Real>(
 ) -> u32 {
     let mut splits = 1.0f64;
     let is_classic = frame.resistance == ResistanceModel::Classic;
-    for (at, collider) in contact.collider_states.iter().enumerate() {
-        let travel = collider.max_travel * (span.to - span.from);
-        for (index, cloth) in model.cloths.iter().enumerate() {
-            let Some(material) = &contact.collider_materials_of(index)[at] else { continue };
-            let own = max_speed[index] * schedule.h;
+    for (index, cloth) in model.cloths.iter().enumerate() {
+        let own = max_speed[index] * schedule.h;
+        let (bounds, strain) = (OnceCell::new(), OnceCell::new());
+        let rest_scale = frame.cloths[index].rest_length_scale;
+        for (collider, material) in contact.collider_states.iter().zip(contact.collider_materials_of(index)) {
+            let Some(material) = material else { continue };
+            let travel = collider.max_travel * (span.to - span.from);
             let edges = travel / cloth.edge_length;
             let advance = if is_classic { (travel + own) / cloth.edge_length } else { edges };
             let (is_pushed, is_fast) = (edges > MIN_ADVANCE, advance > MAX_ADVANCE);
             // A cloth without edges is points, which nothing can jump over.
             let may_split = advance.is_finite() && (is_pushed || is_fast);
-            if !may_split || !is_near(cloth, state, collider, span, material.thickness + own) {
+            let bounds = || bounds.get_or_init(|| bounds_of(cloth, state));
+            if !may_split || !is_near(bounds(), collider, span, material.thickness + own) {
                 continue;
             }
             splits = splits.max(advance / MAX_ADVANCE);
             if is_pushed {
-                let strain = largest_strain(cloth, state, frame.cloths[index].rest_length_scale);
+                let strain = strain.get_or_init(|| largest_strain(cloth, state, rest_scale));
                 splits = splits.max((strain / STRAIN_LIMIT).min(MAX_STRAIN_SPLITS));
             }
         }
@@ -73,19 +78,17 @@ fn largest_strain<R: Real>(cloth: &ClothModel<R>, state: &State<R>, rest_scale: 
     strains.fold(R::ZERO, |most, strain| if strain > most { strain } else { most }).to_f64()
 }
 
-/// Whether a collider comes near a cloth in a time step, by their bounding boxes.
-fn is_near<R: Real>(
-    cloth: &ClothModel<R>,
-    state: &State<R>,
-    collider: &ColliderState,
-    span: StepInterval,
-    room: f64,
-) -> bool {
+/// The bounding box of a cloth in metres.
+fn bounds_of<R: Real>(cloth: &ClothModel<R>, state: &State<R>) -> [Vector3<f64>; 2] {
     let place = |row: u32| Vector3::from(state.position(row));
     let points = cloth.points();
     let first = place(points.start);
-    let cloth = points.fold([first, first], |[low, high], row| [low.inf(&place(row)), high.sup(&place(row))]);
+    points.fold([first, first], |[low, high], row| [low.inf(&place(row)), high.sup(&place(row))])
+}
+
+/// Whether a collider comes within so many metres of a cloth in a time step, by their bounding boxes.
+fn is_near(cloth: &[Vector3<f64>; 2], collider: &ColliderState, span: StepInterval, within: f64) -> bool {
     let [from, to] = [span.from, span.to].map(|time| collider.bounds(time));
     let theirs = [from[0].inf(&to[0]), from[1].sup(&to[1])];
-    (0..3).all(|k| cloth[0][k] - room <= theirs[1][k] && theirs[0][k] <= cloth[1][k] + room)
+    (0..3).all(|k| cloth[0][k] - within <= theirs[1][k] && theirs[0][k] <= cloth[1][k] + within)
 }

@@ -107,6 +107,8 @@ fn each_contact_effect_is_a_pass_only_where_an_attribute_switches_it_on() {
     frame.cloths[0].collide_strength = 0.0;
     assert_eq!(names(alone, &frame), ["predict"]);
     frame.cloths[0].push_out.share = 1.0;
+    assert_eq!(names(alone, &frame), ["predict"], "within no distance");
+    frame.cloths[0].push_out.radius = 0.1;
     assert_eq!(names(alone, &frame), ["predict", "push out"]);
 }
 

@@ -32,6 +32,11 @@ pub struct PushOut {
 impl PushOut {
     /// Off.
     pub const OFF: Self = Self { share: 0.0, radius: 0.0 };
+
+    /// Whether any point can be moved.
+    pub fn is_on(&self) -> bool {
+        self.share != 0.0 && self.radius > 0.0
+    }
 }
 
 /// Self-collision of a cloth.
