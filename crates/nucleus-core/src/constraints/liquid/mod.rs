@@ -34,7 +34,7 @@ use nalgebra::Vector3;
 
 use crate::contact::material::ContactMaterial;
 use crate::contact::system::ContactSystem;
-use crate::input::frame::{FrameInput, Liquid};
+use crate::input::frame::{ClothFrame, FrameInput, Liquid};
 use crate::math::Real;
 use crate::model::Model;
 use crate::parallel::disjoint::DisjointSlice;
@@ -78,6 +78,14 @@ pub struct LiquidSolver {
     topology: u64,
     /// The time step that it is in; `None` for a cloth that is no liquid.
     interval: Option<LiquidInterval>,
+}
+
+/// The volume in m³ of each particle of an object.
+fn volume_of_particle(settings: &ClothFrame) -> f64 {
+    match &settings.liquid {
+        Some(liquid) => liquid.spacing.powi(3),
+        None => 4.0 / 3.0 * std::f64::consts::PI * settings.thickness.powi(3),
+    }
 }
 
 /// One time step of one liquid.
@@ -288,11 +296,21 @@ impl LiquidSolver {
             };
             let mobility = material.mobility[1].to_f64();
             let material = Material { distance: (material.thickness * per_metre) as f32 };
-            let first = walls.corners().len() as u32;
-            for row in model.points().filter(|_| !model.boundary.triangles.is_empty()) {
+            let corner = |row: u32| {
                 let inverse_mass =
                     state.displacement[row as usize].0[3].to_f64() * mobility / step.inverse_mass;
-                walls.corner(Corner { row, inverse_mass: inverse_mass as f32, moved: [0.0; 3] });
+                Corner { row, inverse_mass: inverse_mass as f32, moved: [0.0; 3] }
+            };
+            if model.boundary.triangles.is_empty() {
+                let volume = (volume_of_particle(&frame.cloths[other]) * per_metre.powi(3)) as f32;
+                model
+                    .points()
+                    .for_each(|row| walls.particle(place(at_end(row)), corner(row), volume, bounds));
+                continue;
+            }
+            let first = walls.corners().len() as u32;
+            for row in model.points() {
+                walls.corner(corner(row));
             }
             for triangle in &model.boundary.triangles {
                 let corners = triangle.map(|row| first + row - model.points().start);

@@ -1,16 +1,19 @@
-//! Walls: the density that the ground plane, colliders and cloth add to particles near them, and the reaction on cloth.
+//! Walls: the density that the ground plane, colliders, cloth and particles of other objects add to particles near them, and
+//! the reaction on cloth and on those particles.
 //!
 //! Near a wall a particle lacks neighbours. The plane counts as a half-space full of liquid that begins at half a rest
 //! distance. Surfaces of meshes are covered with samples, each of which counts as much as its area (as the boundary
 //! particles of Akinci et al. 2012, "Versatile rigid-fluid coupling"). A sample at distance r weighs S(r) / 2 pi r, with the
 //! weight S of a sheet of liquid, so that a flat surface weighs as much as the plane. Contact thickness moves both outwards.
 //!
-//! The samples of cloth move with the corners of their triangle, and take up the pressure on them: momentum is kept.
+//! The samples of cloth move with the corners of their triangle, and take up the pressure on them: momentum is kept. A
+//! particle of another object is a sample that weighs as its volume, so that two liquids share the room, and the heavier one
+//! sinks.
 
 use std::f32::consts::PI;
 
 use super::grid::CellGrid;
-use super::kernel::{REACH, half_space, weight};
+use super::kernel::{REACH, half_space, weight, weight_and_slope};
 use super::pair::Pair;
 
 /// How far behind a surface the liquid begins that it counts as: the layers of particles beside it weigh as much as a
@@ -69,7 +72,10 @@ pub struct Corner {
 
 #[derive(Debug, Clone, Copy)]
 struct Sample {
+    /// Area of a part of a surface.
     area: f32,
+    /// Volume of a particle, in those of a particle of the liquid; 0 for a part of a surface.
+    volume: f32,
     offset: f32,
     /// Places in `corners`, and weights; none for colliders.
     corners: Option<[u32; 3]>,
@@ -133,6 +139,18 @@ impl Walls {
         bounds: [[f32; 3]; 2],
     ) {
         self.moving.cover(triangle, corners, material, bounds);
+    }
+
+    /// Adds a particle of another object, of so many volumes of a particle of the liquid, where it is near a box. It moves with
+    /// its corner.
+    pub fn particle(&mut self, place: [f32; 3], corner: Corner, volume: f32, [low, high]: [[f32; 3]; 2]) {
+        // A place that is not a number is near nothing.
+        if (0..3).all(|k| low[k] - REACH <= place[k] && place[k] <= high[k] + REACH) {
+            let corner = self.corner(corner);
+            let (corners, shares) = (Some([corner; 3]), [1.0, 0.0, 0.0]);
+            self.moving.places.push(place);
+            self.moving.samples.push(Sample { area: 0.0, volume, offset: 0.0, corners, shares });
+        }
     }
 
     /// Sorts the samples of surfaces at rest, once all are there.
@@ -286,7 +304,8 @@ impl Samples {
                 let place = place(shares);
                 if (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k]) {
                     self.places.push(place);
-                    self.samples.push(Sample { area: area * share / across as f32, offset, corners, shares });
+                    let area = area * share / across as f32;
+                    self.samples.push(Sample { area, volume: 0.0, offset, corners, shares });
                 }
             }
         }
@@ -330,6 +349,10 @@ impl Sample {
     /// The density that it adds at a distance, and its derivative over the distance.
     #[inline]
     fn density(&self, distance: f32) -> (f32, f32) {
+        if self.volume > 0.0 {
+            let [weight, slope] = weight_and_slope(distance);
+            return (self.volume * weight, self.volume * slope / distance);
+        }
         let q = (distance + GAP - self.offset).max(0.0);
         let part = self.area / (2.0 * PI * distance);
         let sheet = -half_space(q)[1];
