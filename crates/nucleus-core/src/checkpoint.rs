@@ -381,6 +381,7 @@ fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: 
         points.iter().all(|&point| is_point.get(point as usize).is_some_and(|&is_point| is_point))
     };
     (materials.is_empty() || materials.len() == cloths.len() * cloths.len())
+        && cloth_contacts.overlapping.len() == materials.len()
         && cache.point_face.iter().all(|contact| contact.is_valid(are_points, materials.len()))
         && cache.edge_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
         && cache.point_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))
@@ -399,7 +400,7 @@ checkpoint_struct!([R: Real] State<R> {
     values: [wind_travel],
     parts: [populations],
     rebuilt: [
-        start, depenetration_by_collider, depenetration_by_cloth, pushed_out, displaced, step_length, predicted, normal, corrections, area, added_wind,
+        start, depenetration, bearing_depenetration, pushed_out, displaced, step_length, predicted, normal, corrections, area, added_wind,
         field, spins, inverse_mass
     ],
 });
@@ -415,7 +416,7 @@ checkpoint_struct!([R: Real] ColliderContacts<R> {
 
 checkpoint_struct!([R: Real] ClothContacts<R> {
     columns: [bounds_violated, interval_start],
-    values: [materials, interval],
+    values: [materials, overlapping, interval],
     parts: [elements, trajectories, cache, untangling],
     rebuilt: [buffers, frozen, local_anchors],
 });

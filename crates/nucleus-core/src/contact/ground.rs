@@ -315,7 +315,7 @@ impl<R: Real> GroundContact<'_, R> {
             let correction =
                 adhesion.correction(before, add(now, along), normal, self.h).unwrap_or([R::ZERO; 3]);
             (0..3).for_each(|axis| row.0[axis] += correction[axis]);
-            self.writer.push_by_collider(point, row, [R::ZERO; 3]);
+            self.writer.push(point, row, [R::ZERO; 3]);
         }
     }
 
@@ -331,7 +331,7 @@ impl<R: Real> GroundContact<'_, R> {
     fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {
         let start = self.start[self.writer.place_of(point)].xyz();
         let normal = self.plane.normal();
-        let depenetration = self.writer.collider_depenetration(point);
+        let depenetration = self.writer.depenetration(point);
         let before = self.plane.height(0, point, start);
         let mut push = Push::new(thickness, [before, gap], dot(normal, depenetration), self.h);
         if self.material.is_partial(self.material_maps) {
@@ -346,7 +346,7 @@ impl<R: Real> GroundContact<'_, R> {
         let [friction_part, given_back] = coulomb_correction([motion, depenetration], normal, limit);
         let moved = add(scale(normal, push.length()), friction_part);
         (0..3).for_each(|axis| row.0[axis] += moved[axis]);
-        self.writer.push_by_collider(point, row, add(scale(normal, push.depenetration), given_back));
+        self.writer.push(point, row, add(scale(normal, push.depenetration), given_back));
     }
 }
 

@@ -7,7 +7,9 @@
 //!
 //! **One push.** A contact whose gap is below its thickness moves its points apart along the normal, each by inverse
 //! mass times barycentric weight, in a Gauss-Seidel sweep. The part that undoes motion of this step changes velocity;
-//! a depth from before the step is resolved at 1 m/s, without velocity. Coulomb friction is a correction along the
+//! a depth from before the step is resolved at 1 m/s, without velocity. Where cloths overlap from the
+//! start, what another contact reverses of that has no velocity either, or they would throw each other off; between other
+//! cloths it has, because layers bear loads by it. Coulomb friction is a correction along the
 //! surface, at most friction times push ([`response`]). Contacts among cloths carry a persistent friction anchor, so that
 //! stacks do not creep. Adhesion (stickiness) removes a share of the separation speed; restitution is applied to velocities
 //! after the step ([`restitution`]).
@@ -86,6 +88,7 @@
 //! | `cloth::broad_phase::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
 //! | `cloth::broad_phase::BOUND_RADIUS` | 0.4 t or 0.08 e | smaller: more searches; larger: more contacts |
 //! | `cloth::motion_bounds::KEEP_SHARE` | 0.8 | of the radius, within which a bound is kept without search |
+//! | `cloth::contact::OVERLAP` | 0.95 t | layers at rest keep more under their load |
 //! | `cloth::local_anchors::ROUNDINGS` | 96 | rounding errors of the extent, in a gap and its certificate |
 //! | `cloth::elements::GROUP_SIZE` | 8 triangles | within 10 % of the best on W3 |
 //! | `cloth::element_bounds::REST_GAP_SHARE` | 0.5 | a cloth thicker than its faces must still bend |

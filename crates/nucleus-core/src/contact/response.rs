@@ -209,7 +209,7 @@ impl<R: Real> Impact<R> {
         Self {
             predicted: add(
                 state.predicted[row].xyz(),
-                add(state.depenetration_by_collider[row].xyz(), state.depenetration_by_cloth[row].xyz()),
+                add(state.depenetration[row].xyz(), state.bearing_depenetration[row].xyz()),
             ),
             displacement: state.displacement[row].xyz(),
             velocity: state.velocity[row].xyz(),

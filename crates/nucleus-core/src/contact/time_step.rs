@@ -50,8 +50,8 @@ impl ContactCounters {
 #[derive(Clone, Copy)]
 pub struct PositionWriter<'a, R> {
     displacement: DisjointSlice<'a, Row4<R>>,
-    by_collider: DisjointSlice<'a, Row4<R>>,
-    by_cloth: DisjointSlice<'a, Row4<R>>,
+    depenetration: DisjointSlice<'a, Row4<R>>,
+    bearing: DisjointSlice<'a, Row4<R>>,
     predicted: &'a [Row4<R>],
     /// The row of the first entry of all columns but the displacements.
     first: u32,
@@ -62,31 +62,23 @@ impl<'a, R: Real> PositionWriter<'a, R> {
     /// Borrows the columns that contact writes; returns beside it the displacements at the start of the step and the
     /// anchors.
     pub fn of(state: &'a mut State<R>) -> (Self, &'a [Row4<R>], &'a [[f64; 3]]) {
-        let State {
-            displacement,
-            predicted,
-            depenetration_by_collider,
-            depenetration_by_cloth,
-            start,
-            anchor,
-            ..
-        } = state;
-        let [displacement, by_collider, by_cloth] =
-            [displacement, depenetration_by_collider, depenetration_by_cloth]
-                .map(|column| DisjointSlice::new(column));
-        (Self { displacement, by_collider, by_cloth, predicted, first: 0 }, start, anchor)
+        let State { displacement, predicted, depenetration, bearing_depenetration, start, anchor, .. } =
+            state;
+        let [displacement, depenetration, bearing] =
+            [displacement, depenetration, bearing_depenetration].map(|column| DisjointSlice::new(column));
+        (Self { displacement, depenetration, bearing, predicted, first: 0 }, start, anchor)
     }
 
     /// The columns of a run of points from the row `first` on, of which a task keeps all but the displacements. The second
-    /// argument holds the depenetration by colliders and by cloth.
+    /// argument holds the depenetration, and that which bears a load.
     pub fn of_run(
         displacement: DisjointSlice<'a, Row4<R>>,
-        [by_collider, by_cloth]: [&'a mut [Row4<R>]; 2],
+        [depenetration, bearing]: [&'a mut [Row4<R>]; 2],
         predicted: &'a [Row4<R>],
         first: u32,
     ) -> Self {
-        let [by_collider, by_cloth] = [by_collider, by_cloth].map(DisjointSlice::new);
-        Self { displacement, by_collider, by_cloth, predicted, first }
+        let [depenetration, bearing] = [depenetration, bearing].map(DisjointSlice::new);
+        Self { displacement, depenetration, bearing, predicted, first }
     }
 
     /// The place of a point in all columns but the displacements.
@@ -99,16 +91,16 @@ impl<'a, R: Real> PositionWriter<'a, R> {
     #[inline(always)]
     pub fn predicted(&self, point: u32) -> [R; 3] {
         // SAFETY: as below.
-        let by_cloth = unsafe { self.by_cloth.get(point - self.first) }.xyz();
-        add(self.predicted[self.place_of(point)].xyz(), add(self.collider_depenetration(point), by_cloth))
+        let bearing = unsafe { self.bearing.get(point - self.first) }.xyz();
+        add(self.predicted[self.place_of(point)].xyz(), add(self.depenetration(point), bearing))
     }
 
     /// How far constraints and contacts have moved a point that touches no cloth, without its depenetration, in metres.
     #[inline(always)]
     pub fn correction(&self, point: u32) -> R::Lanes {
         // SAFETY: as below.
-        let by_collider = unsafe { self.by_collider.get(point - self.first) };
-        self.row(point).lanes() - self.predicted[self.place_of(point)].lanes() - by_collider.lanes()
+        let depenetration = unsafe { self.depenetration.get(point - self.first) };
+        self.row(point).lanes() - self.predicted[self.place_of(point)].lanes() - depenetration.lanes()
     }
 
     /// A point's displacement in metres, and its inverse mass in 1/kg.
@@ -118,34 +110,34 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         unsafe { self.displacement.get(point) }
     }
 
-    /// How far colliders have depenetrated a point in this step, in metres.
+    /// How far contacts have depenetrated a point in this step, in metres, but for those that bear a load.
     #[inline(always)]
-    pub fn collider_depenetration(&self, point: u32) -> [R; 3] {
+    pub fn depenetration(&self, point: u32) -> [R; 3] {
         // SAFETY: as above.
-        unsafe { self.by_collider.get(point - self.first) }.xyz()
+        unsafe { self.depenetration.get(point - self.first) }.xyz()
     }
 
-    /// Moves a point off a collider; `depenetration` is the part of the push without velocity.
+    /// Moves a point; `depenetration` is the part of the push without velocity.
     #[inline(always)]
-    pub fn push_by_collider(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
-        let [x, y, z] = add(self.collider_depenetration(point), depenetration);
+    pub fn push(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
+        let [x, y, z] = add(self.depenetration(point), depenetration);
         // SAFETY: as above.
         unsafe {
             self.displacement.set(point, row);
-            self.by_collider.set(point - self.first, Row4([x, y, z, R::ZERO]));
+            self.depenetration.set(point - self.first, Row4([x, y, z, R::ZERO]));
         }
     }
 
-    /// Moves a point off another movable point. `depenetration` is the part of the push without velocity, but
-    /// where a collider reverses it it becomes velocity: cloth between the two has to bear the load.
+    /// Moves a point that bears a load: where another contact reverses the part of the push without velocity, that becomes
+    /// velocity.
     #[inline(always)]
-    pub fn push_by_cloth(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
+    pub fn push_bearing(&self, point: u32, row: Row4<R>, depenetration: [R; 3]) {
         // SAFETY: as above.
         unsafe {
-            let mut by_cloth = self.by_cloth.get(point - self.first);
-            (0..3).for_each(|axis| by_cloth.0[axis] += depenetration[axis]);
+            let mut bearing = self.bearing.get(point - self.first);
+            (0..3).for_each(|axis| bearing.0[axis] += depenetration[axis]);
             self.displacement.set(point, row);
-            self.by_cloth.set(point - self.first, by_cloth);
+            self.bearing.set(point - self.first, bearing);
         }
     }
 
@@ -156,8 +148,8 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         // SAFETY: as above.
         unsafe {
             self.displacement.set(point, row);
-            self.by_collider.set(point - self.first, scaled(self.by_collider.get(point - self.first)));
-            self.by_cloth.set(point - self.first, scaled(self.by_cloth.get(point - self.first)));
+            self.depenetration.set(point - self.first, scaled(self.depenetration.get(point - self.first)));
+            self.bearing.set(point - self.first, scaled(self.bearing.get(point - self.first)));
         }
     }
 
@@ -167,8 +159,8 @@ impl<'a, R: Real> PositionWriter<'a, R> {
         // SAFETY: as above.
         unsafe {
             self.displacement.set(point, row);
-            self.by_collider.set(point - self.first, Row4::ZERO);
-            self.by_cloth.set(point - self.first, Row4::ZERO);
+            self.depenetration.set(point - self.first, Row4::ZERO);
+            self.bearing.set(point - self.first, Row4::ZERO);
         }
     }
 }
@@ -294,7 +286,7 @@ impl<R: Real> ColliderStep<'_, R> {
         let mut row = self.row(point);
         if row.0[3] > R::ZERO {
             (0..3).for_each(|axis| row.0[axis] += R::from_f64(push[axis]));
-            self.writer.push_by_collider(
+            self.writer.push(
                 point,
                 row,
                 [depenetration.x, depenetration.y, depenetration.z].map(R::from_f64),

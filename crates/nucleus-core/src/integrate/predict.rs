@@ -196,10 +196,8 @@ pub fn update_velocities<R: Real>(
     is_free: &[bool],
     pool: &ThreadPool,
 ) {
-    let State {
-        displacement, predicted, velocity, depenetration_by_collider, depenetration_by_cloth, ..
-    } = state;
-    let depenetration = [&depenetration_by_collider[..], &depenetration_by_cloth[..]];
+    let State { displacement, predicted, velocity, depenetration, bearing_depenetration, .. } = state;
+    let depenetration = [&depenetration[..], &bearing_depenetration[..]];
     let velocity = DisjointSlice::new(velocity);
     let h = R::from_f64(h);
     for cloth in cloths.iter().zip(is_free).filter(|(_, is_free)| !**is_free).map(|(cloth, _)| cloth) {

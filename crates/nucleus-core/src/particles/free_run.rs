@@ -30,8 +30,8 @@ const RUN: usize = 128;
 struct Buffers<R> {
     start: [Row4<R>; RUN],
     predicted: [Row4<R>; RUN],
-    by_collider: [Row4<R>; RUN],
-    by_cloth: [Row4<R>; RUN],
+    depenetration: [Row4<R>; RUN],
+    bearing: [Row4<R>; RUN],
     heights: [[R; RUN]; 2],
 }
 
@@ -39,7 +39,7 @@ impl<R: Real> Buffers<R> {
     fn new() -> Self {
         let rows = [Row4::ZERO; RUN];
         let heights = [[R::ZERO; RUN]; 2];
-        Self { start: rows, predicted: rows, by_collider: rows, by_cloth: rows, heights }
+        Self { start: rows, predicted: rows, depenetration: rows, bearing: rows, heights }
     }
 }
 
@@ -57,7 +57,7 @@ impl<R: Real> FreePass<'_, R> {
     }
 
     fn advance_run(&self, rows: Range<u32>, buffers: &mut Buffers<R>, near: &mut NearPoints<R>) {
-        let Buffers { start, predicted, by_collider, by_cloth, heights: [at_start, at_end] } = buffers;
+        let Buffers { start, predicted, depenetration, bearing, heights: [at_start, at_end] } = buffers;
         let (count, displacement) = (rows.len(), self.prediction.columns.displacement);
         // SAFETY: tasks do not overlap, nor do their runs.
         #[allow(unsafe_code)]
@@ -68,12 +68,12 @@ impl<R: Real> FreePass<'_, R> {
         if self.plane.is_none() && !self.has_colliders {
             return;
         }
-        by_collider[..count].fill(Row4::ZERO);
-        by_cloth[..count].fill(Row4::ZERO);
+        depenetration[..count].fill(Row4::ZERO);
+        bearing[..count].fill(Row4::ZERO);
         let anchors = &self.anchors[rows.start as usize..rows.end as usize];
         self.contact.ground.heights_of(anchors, [&mut at_start[..count], &mut at_end[..count]]);
         let writer =
-            PositionWriter::of_run(displacement, [by_collider, by_cloth], &predicted[..count], rows.start);
+            PositionWriter::of_run(displacement, [depenetration, bearing], &predicted[..count], rows.start);
         let heights = [&at_start[..count], &at_end[..count]];
         Run { pass: self, writer, rows, start: &start[..count], heights }.advance(near);
     }
@@ -274,7 +274,7 @@ impl<R: Real> Run<'_, R> {
     fn list_displaced(&self, near: &mut NearPoints<R>) {
         let per_h = R::ONE / self.pass.restitution.h;
         for (point, start) in self.rows.clone().zip(self.start) {
-            if self.writer.collider_depenetration(point) != [R::ZERO; 3] {
+            if self.writer.depenetration(point) != [R::ZERO; 3] {
                 let moved = sub(self.writer.row(point).xyz(), start.xyz());
                 near.displaced.push((point, moved.map(|x| x * per_h)));
             }

@@ -222,8 +222,8 @@ fn set_row<R: Real>(
     let columns = [
         &mut state.predicted,
         &mut state.start,
-        &mut state.depenetration_by_collider,
-        &mut state.depenetration_by_cloth,
+        &mut state.depenetration,
+        &mut state.bearing_depenetration,
         &mut state.field,
     ];
     columns.into_iter().filter_map(|column| column.get_mut(row)).for_each(|value| *value = Row4::ZERO);
@@ -257,8 +257,8 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) -> b
         &mut state.velocity,
         &mut state.predicted,
         &mut state.start,
-        &mut state.depenetration_by_collider,
-        &mut state.depenetration_by_cloth,
+        &mut state.depenetration,
+        &mut state.bearing_depenetration,
         &mut state.field,
     ] {
         close_up(column.get_mut(rows.clone()).unwrap_or_default(), kept);

@@ -54,29 +54,26 @@ impl<R: Real> State<R> {
 
     /// Stores the displacements at the start of a time step of `h` seconds, where contact is possible.
     pub fn store_step_start(&mut self, h: f64, can_touch: bool, pool: &ThreadPool) {
-        let Self {
-            start, depenetration_by_collider, depenetration_by_cloth, displacement, displaced, ..
-        } = self;
+        let Self { start, depenetration, bearing_depenetration, displacement, displaced, .. } = self;
         displaced.clear();
         self.step_length = h;
         // Also where contact has just become impossible: a ground plane can be keyed off.
         let rows = if can_touch { displacement.len() } else { 0 };
-        depenetration_by_collider.resize(rows, Row4::ZERO);
-        depenetration_by_cloth.resize(rows, Row4::ZERO);
+        depenetration.resize(rows, Row4::ZERO);
+        bearing_depenetration.resize(rows, Row4::ZERO);
         if can_touch {
             start.resize(rows, Row4::ZERO);
         }
-        let columns = [start, depenetration_by_collider, depenetration_by_cloth]
-            .map(|column| DisjointSlice::new(column));
+        let columns = [start, depenetration, bearing_depenetration].map(|column| DisjointSlice::new(column));
         pool.parallel_for(rows.div_ceil(ROWS_PER_TASK), |task| {
             let own = task * ROWS_PER_TASK..rows.min((task + 1) * ROWS_PER_TASK);
             // SAFETY: no two tasks have a row in common.
             #[allow(unsafe_code)]
-            let [start, by_collider, by_cloth] =
+            let [start, depenetration, bearing] =
                 columns.each_ref().map(|column| unsafe { column.run(own.start as u32..own.end as u32) });
             start.copy_from_slice(&displacement[own]);
-            by_collider.fill(Row4::ZERO);
-            by_cloth.fill(Row4::ZERO);
+            depenetration.fill(Row4::ZERO);
+            bearing.fill(Row4::ZERO);
         });
     }
 }

@@ -28,13 +28,12 @@ pub struct State<R> {
     /// Displacement at the start of the time step, in metres; empty where no contact is possible,
     /// or only that of free points.
     pub start: Vec<Row4<R>>,
-    /// Displacement by depenetration from colliders in the time step, in metres: a motion without velocity. Empty where
-    /// no contact is possible.
-    pub depenetration_by_collider: Vec<Row4<R>>,
-    /// Displacement by depenetration from cloth in the time step, in metres: a motion without velocity. The part that a
-    /// collider takes back does become velocity, because cloth between the two carries the load. Empty where no contact
-    /// is possible.
-    pub depenetration_by_cloth: Vec<Row4<R>>,
+    /// Displacement by depenetration in the time step, in metres: a motion without velocity, also where another contact
+    /// reverses it. Empty where the scene has no contact.
+    pub depenetration: Vec<Row4<R>>,
+    /// The same where cloth bears the load of other cloth: what another contact reverses becomes velocity, or a stack would
+    /// sink. Empty where the scene has no contact.
+    pub bearing_depenetration: Vec<Row4<R>>,
     /// Points that `pushOut` has moved in the substep, and their velocities in m/s.
     pub pushed_out: Vec<(u32, [R; 3])>,
     /// Free points that contact has displaced without velocity in the time step, in order, and their motion in m/s.
@@ -121,7 +120,7 @@ impl<R: Real> State<R> {
     fn velocity_or_motion(&self, row: usize) -> [f64; 3] {
         let is_depenetrated =
             |column: &[Row4<R>]| column.get(row).is_some_and(|row| row.xyz() != [R::ZERO; 3]);
-        if is_depenetrated(&self.depenetration_by_collider) || is_depenetrated(&self.depenetration_by_cloth) {
+        if is_depenetrated(&self.depenetration) || is_depenetrated(&self.bearing_depenetration) {
             let moved = sub(self.displacement[row].xyz(), self.start[row].xyz());
             return moved.map(|x| x.to_f64() / self.step_length);
         }

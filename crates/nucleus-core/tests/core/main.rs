@@ -23,6 +23,7 @@ mod linked_particles;
 mod links;
 mod liquids;
 mod never_stuck;
+mod overlaps;
 mod particle_ramps;
 mod particles;
 mod rest;

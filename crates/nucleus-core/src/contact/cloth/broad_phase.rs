@@ -194,14 +194,16 @@ fn find_candidates<R: Real>(
         let bounds = (&buffers.bounds, &buffers.group_bounds[..]);
         find_intersections(elements, bounds, materials, &input, untangling, pool);
     }
-    let ClothContacts { elements, materials, bounds_violated, buffers, cache, untangling, .. } =
-        cloth_contacts;
+    let ClothContacts {
+        elements, materials, overlapping, bounds_violated, buffers, cache, untangling, ..
+    } = cloth_contacts;
     let SearchBuffers { bounds, group_bounds, margins, groups, new_bounds, tasks, has_violations, .. } =
         buffers;
     cache.remove(&Replaced { bounds_violated, has_violations }, pool);
     let search = ClothSearch {
         elements,
         materials,
+        overlapping,
         bounds,
         group_bounds,
         untangling,
@@ -223,6 +225,9 @@ fn find_candidates<R: Real>(
     }
     cache.finish(elements.blocks);
     bounds_violated.fill(false);
+    if !refresh.is_incremental() {
+        cloth_contacts.find_overlapping();
+    }
 }
 
 impl<R: Real> ClothSearch<'_, R> {

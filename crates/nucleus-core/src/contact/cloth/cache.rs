@@ -89,6 +89,15 @@ impl<R: Real> ContactCache<R> {
         (point_face.len() + edge_edge.len() + point_edge.len() + point_point.len()) as u64
     }
 
+    /// Marks the materials of contacts that overlap.
+    pub(super) fn mark_overlapping(&self, marks: &mut [bool]) {
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        point_face.mark_overlapping(marks);
+        edge_edge.mark_overlapping(marks);
+        point_edge.mark_overlapping(marks);
+        point_point.mark_overlapping(marks);
+    }
+
     /// The number of contacts that keep less than the cloth's thickness, because their elements are neighbours at
     /// rest.
     pub fn count_rest_limited(&self) -> u64 {

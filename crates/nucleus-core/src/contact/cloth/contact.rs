@@ -132,18 +132,20 @@ impl ContactKind {
     pub const HAS_FREE_POINT: u32 = 1 << 29;
     /// It has a friction anchor.
     pub const HAS_ANCHOR: u32 = 1 << 28;
+    /// The two were nearer than their thickness when they were found, and have not been apart since.
+    pub const OVERLAPS: u32 = 1 << 27;
 
     /// A contact of a material, of which nothing is known.
     #[inline(always)]
     pub fn of_material(material: u32) -> Self {
-        debug_assert!(material < Self::HAS_ANCHOR, "16,384 cloths have as many pairs");
+        debug_assert!(material < Self::OVERLAPS, "11,585 cloths have as many pairs");
         Self { word: material }
     }
 
     /// The index of the contact material.
     #[inline(always)]
     pub fn material(self) -> u32 {
-        self.word & (Self::HAS_ANCHOR - 1)
+        self.word & (Self::OVERLAPS - 1)
     }
 
     /// Whether a fact is known.
@@ -152,12 +154,21 @@ impl ContactKind {
         self.word & fact != 0
     }
 
+    /// The same without a fact.
+    #[inline(always)]
+    pub fn without(self, fact: u32) -> Self {
+        Self { word: self.word & !fact }
+    }
+
     /// The same with another fact, if it holds.
     #[inline(always)]
     pub fn with(self, fact: u32, holds: bool) -> Self {
         Self { word: if holds { self.word | fact } else { self.word } }
     }
 }
+
+/// Share of the thickness below which two elements overlap: layers at rest keep more under their load.
+pub(super) const OVERLAP: f64 = 0.95;
 
 /// Two elements that a search has found: they can touch within the candidate interval.
 #[derive(Debug, Clone, Copy)]
@@ -168,6 +179,15 @@ pub struct Candidate<R, const N: usize, const M: usize> {
     pub normal: [R; 3],
     /// The parameters of their contact.
     pub params: ContactParams<R>,
+}
+
+impl<R: Real, const N: usize, const M: usize> Candidate<R, N, M> {
+    /// Notes whether the two overlap at a distance in metres. Neighbours at rest are pressed together where cloth folds.
+    pub(super) fn mark_overlap(&mut self, distance: R) {
+        let ContactParams { thickness, kind } = self.params;
+        let overlaps = !kind.is(ContactKind::REST_LIMITED) && distance < thickness * R::from_f64(OVERLAP);
+        self.params.kind = kind.with(ContactKind::OVERLAPS, overlaps);
+    }
 }
 
 /// A contact: `N` points of one element, `M` of the other.
@@ -236,6 +256,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     #[inline(always)]
     pub(super) fn material<'a>(&self, step: &ClothStep<'a, R>) -> Option<&'a ContactMaterial<R>> {
         step.materials.get(self.params.kind.material() as usize)?.as_ref()
+    }
+
+    /// The index of the contact material of the two cloths.
+    pub(super) fn material_index(&self) -> usize {
+        self.params.kind.material() as usize
     }
 
     /// Whether this pass resolves it.
@@ -327,6 +352,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// Whether one side is a free point.
     pub(super) fn has_free_point(&self) -> bool {
         self.params.kind.is(ContactKind::HAS_FREE_POINT)
+    }
+
+    /// Whether the two were nearer than their thickness when they were found, and have not been apart since.
+    pub(super) fn overlaps(&self) -> bool {
+        self.params.kind.is(ContactKind::OVERLAPS)
     }
 
     /// Whether it has a friction anchor.

@@ -133,6 +133,12 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         tasks.map(|task| pool.least(task.contacts(), ratio)).fold(f64::INFINITY, f64::min)
     }
 
+    /// Marks the materials of contacts that overlap.
+    pub fn mark_overlapping(&self, marks: &mut [bool]) {
+        let overlapping = self.iter().filter(|contact| contact.overlaps());
+        overlapping.for_each(|contact| marks[contact.material_index()] = true);
+    }
+
     /// Renumbers the rows of points; removes contacts of a point without a number.
     pub fn renumber(&mut self, number: &impl Fn(u32) -> Option<u32>, blocks: Blocks<'_>) {
         for (all, is_free) in [(&mut self.free_points, true), (&mut self.cloth, false)] {

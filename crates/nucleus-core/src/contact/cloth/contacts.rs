@@ -26,6 +26,9 @@ pub struct ClothContacts<R> {
     pub elements: ElementGroups,
     /// Contact materials in this frame, by cloth and cloth.
     pub materials: Vec<Option<ContactMaterial<R>>>,
+    /// Whether the two cloths of each material may overlap, since the scene brought them together. In other cloths, what is
+    /// nearer than its thickness is pressed together, and bears loads.
+    pub overlapping: Vec<bool>,
     /// The motion bound of each point over the candidate interval.
     pub trajectories: Trajectories<R>,
     /// Anchors for fast gaps.
@@ -53,6 +56,7 @@ impl<R: Real> ClothContacts<R> {
         Self {
             elements: ElementGroups::new(cloths, anchors),
             materials: Vec::new(),
+            overlapping: Vec::new(),
             trajectories: Trajectories::new(rows),
             local_anchors: LocalAnchors::default(),
             interval_start: vec![Row4::ZERO; rows],
@@ -99,8 +103,9 @@ impl<R: Real> ClothContacts<R> {
     /// Has the pairs searched anew that other materials than `before` may find, from one side each: of cloths with other
     /// settings, and not of all that they can touch.
     pub(super) fn search_changed(&mut self, before: &[Option<ContactMaterial<R>>]) {
-        let Self { elements, materials, bounds_violated, .. } = self;
+        let Self { elements, materials, overlapping, bounds_violated, .. } = self;
         let cloths = materials.len().isqrt();
+        overlapping.resize(materials.len(), true);
         let is_changed = |pair: usize| {
             let before = before.get(pair..=pair).unwrap_or_default();
             !ContactMaterial::same_candidates(&materials[pair..=pair], before)
@@ -108,6 +113,7 @@ impl<R: Real> ClothContacts<R> {
         let mut counts = vec![0; cloths];
         let mut changed: Vec<bool> = (0..materials.len()).map(is_changed).collect();
         for pair in (0..materials.len()).filter(|&pair| changed[pair]) {
+            overlapping[pair] = true;
             [pair / cloths, pair % cloths].into_iter().for_each(|side| counts[side] += 1);
         }
         let mut is_searched = vec![false; cloths];
@@ -125,6 +131,25 @@ impl<R: Real> ClothContacts<R> {
         }
         let points = bounds_violated.iter_mut().zip(&elements.cloth);
         points.for_each(|(is_violated, &cloth)| *is_violated |= is_searched[cloth as usize]);
+    }
+
+    /// Finds which cloths still overlap: those with such a contact, and those that intersect. After a search for all contacts.
+    pub(super) fn find_overlapping(&mut self) {
+        let Self { overlapping, cache, untangling, .. } = self;
+        if overlapping.contains(&true) || untangling.any() {
+            let cloths = overlapping.len().isqrt();
+            overlapping.fill(false);
+            cache.mark_overlapping(overlapping);
+            for &[a, b] in untangling.cloth_pairs() {
+                overlapping[a as usize * cloths + b as usize] = true;
+            }
+            for [ours, theirs] in
+                (0..cloths).flat_map(|a| (0..a).map(move |b| [a * cloths + b, b * cloths + a]))
+            {
+                let either = overlapping[ours] || overlapping[theirs];
+                (overlapping[ours], overlapping[theirs]) = (either, either);
+            }
+        }
     }
 
     /// Whether a cloth can collide with itself or with another in this frame.

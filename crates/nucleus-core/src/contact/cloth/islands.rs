@@ -42,8 +42,8 @@ pub fn keep_momentum<R: Real>(pass: &mut ContactPass<'_, R>) {
     for ((cloth, drift), mean) in model.cloths.iter().zip(&contact.drift).zip(means) {
         let Some(lost) = drift.map(|drift| sub(drift, mean)) else { continue };
         for row in cloth.points().map(|row| row as usize) {
-            let [x, y, z] = sub(state.depenetration_by_cloth[row].xyz(), lost);
-            state.depenetration_by_cloth[row] = Row4([x, y, z, R::ZERO]);
+            let [x, y, z] = sub(state.bearing_depenetration[row].xyz(), lost);
+            state.bearing_depenetration[row] = Row4([x, y, z, R::ZERO]);
         }
     }
 }
@@ -97,8 +97,7 @@ fn mean_motions<R: Real>(pass: &ContactPass<'_, R>) -> Vec<[R; 3]> {
         let sum = &mut sums[islands.find(index as u32) as usize];
         for row in cloth.points().map(|row| row as usize) {
             let mass = 1.0 / state.displacement[row].0[3].to_f64();
-            let without_velocity =
-                [&state.start, &state.depenetration_by_collider, &state.depenetration_by_cloth];
+            let without_velocity = [&state.start, &state.depenetration, &state.bearing_depenetration];
             let without_velocity =
                 without_velocity.map(|column| column[row].xyz()).into_iter().fold([R::ZERO; 3], add);
             let moved = sub(state.displacement[row].xyz(), without_velocity).map(R::to_f64);

@@ -90,13 +90,20 @@ impl<'a, R: Real> ClothPair<'a, R> {
             return;
         }
         let known = found.candidates.len();
+        let [ours, theirs] = self.cloths;
+        let may_overlap = self.search.overlapping[ours * self.search.input.cloths.len() + theirs];
         let SearchInput { anchors, displacement: [start, _], .. } = self.search.input;
         // SAFETY: these kernels ask for nothing but the lanes.
         #[allow(unsafe_code)]
         unsafe {
             kernel::run(NearPairs { pair: self, found });
             // By itself, because it has the solver's scalar.
-            kernel::run(SetNormals { candidates: &mut found.candidates[known..], anchors, start });
+            kernel::run(SetNormals {
+                candidates: &mut found.candidates[known..],
+                anchors,
+                start,
+                may_overlap,
+            });
         }
         found.overlapping.clear();
     }

@@ -14,6 +14,8 @@ pub(super) struct SetNormals<'a, R, const N: usize, const M: usize> {
     pub anchors: &'a [[f64; 3]],
     /// Displacements at the start of the step, by point.
     pub start: &'a [Row4<R>],
+    /// Whether the two cloths may overlap.
+    pub may_overlap: bool,
 }
 
 impl<R: Real, const N: usize, const M: usize> Kernel<R> for SetNormals<'_, R, N, M> {
@@ -22,21 +24,26 @@ impl<R: Real, const N: usize, const M: usize> Kernel<R> for SetNormals<'_, R, N,
     #[inline(always)]
     #[allow(unsafe_code)]
     unsafe fn run<L: Lanes<R>>(self) {
-        let Self { candidates, anchors, start } = self;
+        let Self { candidates, anchors, start, may_overlap } = self;
         for some in candidates.chunks_mut(4 * L::GROUPS) {
-            set_normals::<R, L, N, M>(some, |(ours, theirs)| {
+            let distances = set_normals::<R, L, N, M>(some, |(ours, theirs)| {
                 positions((ours, theirs), anchors, |point| start[point as usize].xyz())
             });
+            if may_overlap {
+                some.iter_mut()
+                    .zip(distances)
+                    .for_each(|(candidate, distance)| candidate.mark_overlap(distance));
+            }
         }
     }
 }
 
-/// Sets the normals of no more candidates than there are lanes.
+/// Sets the normals of no more candidates than there are lanes. Returns the distances at the start of the step in metres.
 #[inline(always)]
 fn set_normals<R: Real, L: Lanes<R>, const N: usize, const M: usize>(
     candidates: &mut [Candidate<R, N, M>],
     at: impl Fn(&ElementPoints<N, M>) -> ElementPositions<R, N, M>,
-) {
+) -> [R; 8] {
     let (mut ours, mut theirs) = ([[[[R::ZERO; 4]; 2]; 3]; N], [[[[R::ZERO; 4]; 2]; 3]; M]);
     for lane in 0..4 * L::GROUPS {
         let at = at(&of_lane(candidates, lane).points);
@@ -60,12 +67,15 @@ fn set_normals<R: Real, L: Lanes<R>, const N: usize, const M: usize>(
         normal[axis]
             .for_groups(|group, four| (0..4).for_each(|lane| normals[4 * group + lane][axis] = four[lane]));
     }
+    let mut distances = [R::ZERO; 8];
+    length.for_groups(|group, four| distances[4 * group..4 * group + 4].copy_from_slice(&four));
     for (lane, candidate) in candidates.iter_mut().enumerate() {
         candidate.normal = match are_apart & (1 << lane) {
             0 => shortest_line(at(&candidate.points)).0,
             _ => normals[lane],
         };
     }
+    distances
 }
 
 /// The lanes of positions by axis, group and lane.

@@ -6,12 +6,23 @@
 
 use crate::contact::ccd::{first_contact_normal, passing_direction};
 use crate::contact::cloth::certify::{START_TOLERANCE, rounding_error};
-use crate::contact::cloth::contact::{ClothContact, ClothStep, ContactKind};
+use crate::contact::cloth::contact::{ClothContact, ClothStep, ContactKind, OVERLAP};
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::{ElementPositions, gap_along, interpolate, shortest_line};
 use crate::contact::response::{Adhesion, Impact, Mobility, Push, Restitution, TOUCH_TOLERANCE};
 use crate::math::{Real, Row4, add, clamp_length, dot, max, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
+
+/// A motion of one side of a contact relative to the other, in metres.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Correction<R> {
+    /// All of it.
+    moved: [R; 3],
+    /// The part of it without velocity.
+    depenetration: [R; 3],
+    /// Whether that part becomes velocity where another contact reverses it: what lies between the two bears a load then.
+    bears_load: bool,
+}
 
 impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// Pushes the two apart if they are nearer than their thickness. Returns whether they were.
@@ -103,9 +114,12 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     ) {
         let Some(material) = self.material(step) else { return };
         let line_before = self.contact_line(before, weights);
-        // Two movable sides balance by their velocities, so no depenetration by other contacts is reversed here.
-        let mut push =
-            Push::new(rest_gap, [dot(self.normal, line_before), rest_gap - depth], R::ZERO, step.h);
+        let gap_before = dot(self.normal, line_before);
+        if self.overlaps() && gap_before >= rest_gap * R::from_f64(OVERLAP) {
+            self.params.kind = self.params.kind.without(ContactKind::OVERLAPS);
+        }
+        let separated = dot(self.normal, self.relative(weights, |point| step.writer.depenetration(point)));
+        let mut push = Push::new(rest_gap, [gap_before, rest_gap - depth], separated, step.h);
         if material.is_partial(step.material_maps) {
             push = push.scaled(material.strength_at(step.material_maps, self.contact_points(weights)));
         }
@@ -122,53 +136,60 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         } else {
             [[R::ZERO; 3]; 2]
         };
-        self.push_apart(
-            step,
-            material,
-            weights,
-            add(along[0], friction_part[0]),
-            add(along[1], friction_part[1]),
-        );
+        let correction = Correction {
+            moved: add(along[0], friction_part[0]),
+            depenetration: add(along[1], friction_part[1]),
+            bears_load: !self.overlaps() && separated >= R::ZERO,
+        };
+        self.push_apart(step, material, weights, &correction);
     }
 
-    /// Moves the two apart by `moved`, each side by its mobility; `depenetration` is the part of it without
-    /// velocity.
+    /// Moves the two apart, each side by its mobility.
     pub(super) fn push_apart(
         &self,
         step: &ClothStep<'_, R>,
         material: &ContactMaterial<R>,
         (b, c): &([R; N], [R; M]),
-        moved: [R; 3],
-        depenetration: [R; 3],
+        correction: &Correction<R>,
     ) {
-        let (ours, theirs) = self.inverse_masses(step, material);
-        let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
-        if all <= R::MIN_DENOMINATOR {
-            return;
-        }
+        let Some((ours, theirs, all)) = self.inverse_masses(step, material, (b, c)) else { return };
         let part = R::ONE / all;
         for k in 0..N {
-            self.move_point(step, self.ours[k], ours[k] * b[k] * part, moved, depenetration);
+            self.move_point(step, self.ours[k], ours[k] * b[k] * part, correction);
         }
         for k in 0..M {
-            self.move_point(step, self.theirs[k], -(theirs[k] * c[k] * part), moved, depenetration);
+            self.move_point(step, self.theirs[k], -(theirs[k] * c[k] * part), correction);
         }
     }
 
-    /// The inverse masses of our points and of theirs in 1/kg, as they count in this contact.
+    /// The inverse masses of our points and of theirs in 1/kg, as they count in this contact, and its mobility; `None` where
+    /// none can move.
     #[inline(always)]
-    fn inverse_masses(&self, step: &ClothStep<'_, R>, material: &ContactMaterial<R>) -> ([R; N], [R; M]) {
-        let of = |point: u32, side: usize| step.row(point).0[3] * material.mobility[side];
-        (self.ours.map(|point| of(point, 0)), self.theirs.map(|point| of(point, 1)))
+    fn inverse_masses(
+        &self,
+        step: &ClothStep<'_, R>,
+        material: &ContactMaterial<R>,
+        (b, c): (&[R; N], &[R; M]),
+    ) -> Option<([R; N], [R; M], R)> {
+        let share = material.mobility;
+        let ours = self.ours.map(|point| step.row(point).0[3] * share[0]);
+        let theirs = self.theirs.map(|point| step.row(point).0[3] * share[1]);
+        let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
+        (all > R::MIN_DENOMINATOR).then_some((ours, theirs, all))
     }
 
     #[inline(always)]
-    fn move_point(&self, step: &ClothStep<'_, R>, point: u32, part: R, moved: [R; 3], depenetration: [R; 3]) {
+    fn move_point(&self, step: &ClothStep<'_, R>, point: u32, part: R, correction: &Correction<R>) {
         let mut row = step.row(point);
         for axis in 0..3 {
-            row.0[axis] += moved[axis] * part;
+            row.0[axis] += correction.moved[axis] * part;
         }
-        step.writer.push_by_cloth(point, row, scale(depenetration, part));
+        let depenetration = scale(correction.depenetration, part);
+        if correction.bears_load {
+            step.writer.push_bearing(point, row, depenetration);
+        } else {
+            step.writer.push(point, row, depenetration);
+        }
     }
 
     /// The line from the contact point on theirs to that on ours.
@@ -275,7 +296,8 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         };
         let [before, now] = [self.contact_line(&before, &weights), self.contact_line(&now, &weights)];
         let correction = adhesion.correction(before, now, normal, step.h);
-        correction.inspect(|&moved| self.push_apart(step, material, &weights, moved, [R::ZERO; 3])).is_some()
+        let correction = correction.map(|moved| Correction { moved, ..Correction::default() });
+        correction.inspect(|correction| self.push_apart(step, material, &weights, correction)).is_some()
     }
 }
 
@@ -314,11 +336,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             return false;
         }
         let (b, c) = weights;
-        let (ours, theirs) = self.inverse_masses(step, material);
-        let all = Mobility::of(ours, b).and(Mobility::of(theirs, c)).total();
-        if all <= R::MIN_DENOMINATOR {
-            return false;
-        }
+        let Some((ours, theirs, all)) = self.inverse_masses(step, material, (&b, &c)) else { return false };
         let of_ours = (0..N).map(|k| (self.ours[k], ours[k] * b[k]));
         let of_theirs = (0..M).map(|k| (self.theirs[k], -(theirs[k] * c[k])));
         for (point, mobile) in of_ours.chain(of_theirs) {

@@ -47,6 +47,8 @@ pub struct SearchInput<'a, R> {
 pub(super) struct ClothSearch<'a, R> {
     pub(super) elements: &'a ElementGroups,
     pub(super) materials: &'a [Option<ContactMaterial<R>>],
+    /// By material: whether the two cloths may overlap.
+    pub(super) overlapping: &'a [bool],
     pub(super) bounds: &'a ElementBounds,
     pub(super) untangling: &'a Untangling,
     pub(super) input: SearchInput<'a, R>,

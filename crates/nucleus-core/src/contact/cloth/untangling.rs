@@ -230,7 +230,7 @@ impl Intersection {
             let moved = scale(motion, mobile / all).map(R::from_f64);
             let row = step.row(point);
             let [x, y, z] = add(row.xyz(), moved);
-            step.writer.push_by_cloth(point, Row4([x, y, z, row.0[3]]), moved);
+            step.writer.push(point, Row4([x, y, z, row.0[3]]), moved);
         }
     }
 }

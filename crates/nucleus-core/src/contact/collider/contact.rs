@@ -304,8 +304,8 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 
     /// Depenetration by colliders at the contact in this step, in metres.
     #[inline(always)]
-    pub(super) fn collider_depenetration(&self, step: &ColliderStep<'_, R>) -> [R; 3] {
-        self.contact_displacement(self.points.map(|point| step.writer.collider_depenetration(point)))
+    pub(super) fn depenetration(&self, step: &ColliderStep<'_, R>) -> [R; 3] {
+        self.contact_displacement(self.points.map(|point| step.writer.depenetration(point)))
     }
 
     /// Whether the contact is still where its plane was set.

@@ -84,10 +84,8 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             if passes {
                 self.set_plane(normal, at_start, step);
                 let rest_gap = R::from_f64(thickness);
-                let (gaps, depenetration) = (
-                    [self.gap_at_start(step), R::from_f64(gap)],
-                    dot(self.normal, self.collider_depenetration(step)),
-                );
+                let (gaps, depenetration) =
+                    ([self.gap_at_start(step), R::from_f64(gap)], dot(self.normal, self.depenetration(step)));
                 self.push_rigidly(step, Push::new(rest_gap, gaps, depenetration, step.h));
                 return Outcome::Reverted;
             }
@@ -111,7 +109,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         if mobility <= R::ZERO {
             return;
         }
-        let depenetration = self.collider_depenetration(step);
+        let depenetration = self.depenetration(step);
         let mut push = Push::new(rest_gap, gaps, dot(self.normal, depenetration), step.h);
         let mut mapped = None;
         let material = self.material(step, &mut mapped);
@@ -129,7 +127,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             for axis in 0..3 {
                 row.0[axis] += mobile * moved[axis];
             }
-            step.writer.push_by_collider(self.points[k], row, scale(depenetration, mobile));
+            step.writer.push(self.points[k], row, scale(depenetration, mobile));
         }
     }
 
@@ -147,7 +145,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
                 for axis in 0..3 {
                     row.0[axis] += self.normal[axis] * push.length();
                 }
-                step.writer.push_by_collider(point, row, self.normal.map(|n| n * push.depenetration));
+                step.writer.push(point, row, self.normal.map(|n| n * push.depenetration));
             }
         }
     }
@@ -226,7 +224,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             for (k, mut row) in rows.into_iter().enumerate() {
                 let part = row.0[3] * self.weights[k] / mobility;
                 (0..3).for_each(|axis| row.0[axis] += part * correction[axis]);
-                step.writer.push_by_collider(self.points[k], row, [R::ZERO; 3]);
+                step.writer.push(self.points[k], row, [R::ZERO; 3]);
             }
         }
     }

@@ -63,7 +63,7 @@ impl<R: Real> GroundContact<'_, R> {
         let parts = R::Lanes::transpose([a, b, c, R::Lanes::splat(R::ZERO)]);
         for lane in (0..4).filter(|lane| pushed >> lane & 1 == 1) {
             let (row, part) = (Row4(rows[lane].to_array()), Row4::<R>(parts[lane].to_array()));
-            self.writer.push_by_collider(first + lane as u32, row, part.xyz());
+            self.writer.push(first + lane as u32, row, part.xyz());
         }
         u64::from(pushed.count_ones())
     }
@@ -95,7 +95,7 @@ impl<R: Real> GroundContact<'_, R> {
         let (zero, one) = (R::Lanes::splat(R::ZERO), R::Lanes::splat(R::ONE));
         let normal = common.normals[1];
         let start = gather(first, |point| self.start[self.writer.place_of(point)].xyz());
-        let so_far = gather(first, |point| self.writer.collider_depenetration(point));
+        let so_far = gather(first, |point| self.writer.depenetration(point));
         // As `Push::new`.
         let separated = dot::<R>(normal, so_far);
         let depth = common.thickness - gap;
@@ -203,9 +203,9 @@ mod tests {
                 let row = |[x, y, z]: [f32; 3], at: usize| Row4([x, y, z, if at == pinned { 0.0 } else { 1.0 }]);
                 let column = |rows: &[[f32; 3]]| rows.iter().enumerate().map(|(at, &x)| row(x, at)).collect::<Vec<_>>();
                 let (mut moved, start, predicted) = (column(&now), column(&start), column(&now));
-                let mut by_collider: Vec<_> = so_far.iter().map(|&[x, y, z]| Row4([0.1 * x, 0.1 * y, 0.1 * z, 0.0])).collect();
-                let mut by_cloth = [Row4::ZERO; 8];
-                let columns = [&mut by_collider[..], &mut by_cloth[..]];
+                let mut depenetration: Vec<_> = so_far.iter().map(|&[x, y, z]| Row4([0.1 * x, 0.1 * y, 0.1 * z, 0.0])).collect();
+                let mut bearing = [Row4::ZERO; 8];
+                let columns = [&mut depenetration[..], &mut bearing[..]];
                 let contact = GroundContact {
                     writer: PositionWriter::of_run(DisjointSlice::new(&mut moved), columns, &predicted, 0),
                     start: &start,
@@ -218,7 +218,7 @@ mod tests {
                 };
                 let pushes: u64 = runs.iter().map(|run| contact.resolve(run.clone())).sum();
                 let bits = |rows: &[Row4<f32>]| rows.iter().flat_map(|row| row.0).map(f32::to_bits).collect::<Vec<_>>();
-                (pushes, bits(&moved), bits(&by_collider))
+                (pushes, bits(&moved), bits(&depenetration))
             };
             let alone: Vec<_> = (0..8).map(|at| at..at + 1).collect();
             prop_assert_eq!(run(&[0..4, 4..8]), run(&alone));
