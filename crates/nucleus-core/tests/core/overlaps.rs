@@ -1,9 +1,9 @@
-//! Cloths that start closer than their thickness come apart and are not thrown.
+//! Cloths that start closer than their thickness, or in layers of which one is held, come apart and are not thrown.
 
 use crate::scenes::{LINKS, Vec3, frame, grid, physical, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, Elements, FrameInput, Mass, ModelBuilder, Solver, StateView, StepReport,
-    Surface,
+    Cloth, ClothFrame, ClothId, Elements, FrameInput, Mass, ModelBuilder, Pin, PointId, Solver, StateView,
+    StepReport, Surface,
 };
 
 /// Contact thickness of each cloth in metres; two keep twice as much.
@@ -73,4 +73,37 @@ fn two_cloths_in_one_place_come_apart_slowly() {
     let (reports, _) = run(&sheets, 24, |_| {});
     let fastest = reports.iter().map(|report| speed(report, 2)).fold(0.0, f64::max);
     assert!(fastest < 0.5, "{fastest} m/s");
+}
+
+#[test]
+fn a_lower_layer_gives_way_where_the_higher_one_is_held() {
+    // The higher layer is pinned as a whole and moves through the place of the lower one, which is free.
+    let sheets = stack(2, 3.0 * THICKNESS, 0.12);
+    let mut builder = ModelBuilder::new();
+    for sheet in &sheets {
+        builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(DENSITY), LINKS)).expect("a good mesh");
+    }
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let cloth = ClothFrame { collide: true, thickness: THICKNESS, elements: Elements::Faces, ..still() };
+    let height = |frame: u32| Vec3::y() * (-0.01 * f64::from(frame));
+    let mut unresolved = 0;
+    for frame_of_run in 0..20 {
+        let pin = |(point, place): (usize, &Vec3)| Pin {
+            cloth: ClothId(1),
+            point: PointId(point as u32),
+            start: place + height(frame_of_run),
+            end: place + height(frame_of_run + 1),
+        };
+        let input = FrameInput {
+            gravity: Vec3::zeros(),
+            air_density: 0.0,
+            pins: sheets[1].positions.iter().enumerate().map(pin).collect(),
+            cloths: vec![cloth, ClothFrame { layer: 1.0, ..cloth }],
+            ..frame(3, physical(96.0))
+        };
+        unresolved += solver.step(&input, &mut ()).pairs_unresolved;
+    }
+    assert_eq!(unresolved, 0);
+    let (held, free) = (0.03 - 0.2, (0..121).map(|point| solver.point(ClothId(0), point).y));
+    assert!(free.fold(f64::MIN, f64::max) < held, "it is pushed on before the held one");
 }

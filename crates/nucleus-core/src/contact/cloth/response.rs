@@ -163,7 +163,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     }
 
     /// The inverse masses of our points and of theirs in 1/kg, as they count in this contact, and its mobility; `None` where
-    /// none can move.
+    /// all are pinned. The lower layer moves only where the higher one is pinned.
     #[inline(always)]
     fn inverse_masses(
         &self,
@@ -171,11 +171,13 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         material: &ContactMaterial<R>,
         (b, c): (&[R; N], &[R; M]),
     ) -> Option<([R; N], [R; M], R)> {
-        let share = material.mobility;
-        let ours = self.ours.map(|point| step.row(point).0[3] * share[0]);
-        let theirs = self.theirs.map(|point| step.row(point).0[3] * share[1]);
-        let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
-        (all > R::MIN_DENOMINATOR).then_some((ours, theirs, all))
+        let with = |share: [R; 2]| {
+            let ours = self.ours.map(|point| step.row(point).0[3] * share[0]);
+            let theirs = self.theirs.map(|point| step.row(point).0[3] * share[1]);
+            let all = Mobility::of(ours, *b).and(Mobility::of(theirs, *c)).total();
+            (all > R::MIN_DENOMINATOR).then_some((ours, theirs, all))
+        };
+        with(material.mobility).or_else(|| with([R::ONE; 2]))
     }
 
     #[inline(always)]
