@@ -101,13 +101,19 @@ fn remove_old_cache(root: &Path, command: &str) -> anyhow::Result<()> {
     if cache.exists() { fs::remove_file(&cache).context("the cache of an earlier run") } else { Ok(()) }
 }
 
-/// Runs every scene with its checks, one per core at a time.
+/// Runs every scene with its checks, one per core at a time, but for those that a command of the README has run.
 fn scenes(root: &Path) -> anyhow::Result<()> {
     let program = built(root).join("nucleus");
     let all = files::below(&root.join("scenes"))?;
     let stress_tests = root.join(STRESS_TESTS);
+    let commands = readme::commands(&fs::read_to_string(root.join("README.md")).context("README.md")?);
+    let has_run = |path: &Path| {
+        let name = files::name(root, path);
+        commands.iter().any(|command| command.split_whitespace().any(|word| word == name))
+    };
     let is_scene = |path: &&PathBuf| {
-        path.extension().is_some_and(|end| end == "ron") && !path.starts_with(&stress_tests)
+        let is_ron = path.extension().is_some_and(|end| end == "ron");
+        is_ron && !path.starts_with(&stress_tests) && !has_run(path)
     };
     let scenes: Vec<_> = all.iter().filter(is_scene).collect();
     ensure!(!scenes.is_empty(), "there are no scenes");
