@@ -742,7 +742,7 @@ fn collision_events_emit_into_the_particles_that_maya_names() {
     let read = with_events(&format!("{events}connectAttr \"dropsShape.msg\" \"pShape.etg[0]\";\n"));
     let graph = &read.imported.scene.graph;
     let particles = graph.node(graph.find("p").unwrap());
-    assert_eq!(particles.get(&n_particle::EVENT_PARTICLES), "drops");
+    assert_eq!(particles.get(&n_particle::EVENT_PARTICLES), ["drops"]);
     assert_eq!(particles.get(&particle::EVENT_COUNT), [0.0, 2.0]);
     assert_eq!(particles.get(&particle::EVENT_EMIT), [5.0, 0.0]);
     assert_eq!(particles.get(&particle::EVENT_SPLIT), [0.0, 3.0]);
@@ -760,23 +760,37 @@ fn collision_events_without_a_target_or_with_their_own_particles_emit_into_these
         let graph = &read.imported.scene.graph;
         let particles = graph.node(graph.find("p").unwrap());
         assert_eq!(particles.get(&particle::EVENT_EMIT), [5.0]);
-        assert_eq!(particles.get(&n_particle::EVENT_PARTICLES), "");
+        assert!(particles.get(&n_particle::EVENT_PARTICLES).is_empty());
     }
 }
 
 #[test]
-fn collision_events_into_other_objects_than_one_nparticle_are_left_out_and_listed() {
-    let both = [event(0, [1, 0, 5, 0, 0, 0], 0.0), event(1, [1, 0, 5, 0, 0, 0], 0.0)].concat();
-    let several = "connectAttr \"dropsShape.msg\" \"pShape.etg[0]\";\nconnectAttr \"mistShape.msg\" \"pShape.etg[1]\";\n";
+fn collision_events_into_several_nparticles_have_a_target_each() {
+    let events = [
+        event(0, [1, 0, 5, 0, 0, 0], 0.0),
+        event(1, [1, 0, 0, 2, 0, 0], 0.0),
+        event(2, [1, 0, 5, 0, 0, 0], 0.0),
+        event(3, [1, 0, 5, 0, 0, 0], 0.0),
+    ]
+    .concat();
+    let wires = "connectAttr \"dropsShape.msg\" \"pShape.etg[0]\";\nconnectAttr \"mistShape.msg\" \"pShape.etg[2]\";\n";
+    let read = with_events(&format!("{events}{wires}"));
+    let graph = &read.imported.scene.graph;
+    let particles = graph.node(graph.find("p").unwrap());
+    assert_eq!(particles.get(&n_particle::EVENT_PARTICLES), ["drops", "", "mist", ""]);
+    assert_eq!(particles.get(&particle::EVENT_EMIT), [5.0, 0.0, 5.0, 5.0]);
+    assert_round_trip(&read);
+}
+
+#[test]
+fn collision_events_into_an_object_that_is_no_nparticle_are_left_out_and_listed() {
     let classic = "createNode particle -n \"old\";\nconnectAttr \"old.msg\" \"pShape.etg[0]\";\n";
-    for (targets, why) in [(several, "several nParticles"), (classic, "is not carried over")] {
-        let read = with_events(&format!("{both}{targets}"));
-        let graph = &read.imported.scene.graph;
-        let particles = graph.node(graph.find("p").unwrap());
-        assert!(particles.get(&particle::EVENT_EMIT).is_empty());
-        assert!(particles.get(&particle::EVENT_SPREAD).is_empty());
-        assert!(read.omits("pShape.eventTarget", why), "{}", read.imported.omissions);
-    }
+    let read = with_events(&(event(0, [1, 0, 5, 0, 0, 0], 0.0) + classic));
+    let graph = &read.imported.scene.graph;
+    let particles = graph.node(graph.find("p").unwrap());
+    assert!(particles.get(&particle::EVENT_EMIT).is_empty());
+    assert!(particles.get(&particle::EVENT_SPREAD).is_empty());
+    assert!(read.omits("pShape.eventTarget", "is not carried over"), "{}", read.imported.omissions);
 }
 
 #[test]

@@ -23,8 +23,8 @@ fn rows() -> [(&'static Attribute, f64); 6] {
 }
 
 impl Importer<'_> {
-    /// Sets the collision events of particles. All of them are left out where one emits into an object that
-    /// `eventParticles` cannot name.
+    /// Sets the collision events of particles. All of them are left out where one emits into an object that is
+    /// no nParticle of the scene.
     pub(super) fn set_events(&mut self, from: NodeId, to: OwnId) {
         let lists = rows().map(|(row, _)| self.elements_of(from, row));
         let valid = self.elements_of(from, &particle::EVENT_VALID.row);
@@ -35,11 +35,11 @@ impl Importer<'_> {
         events.dedup();
         let emitting: Vec<u32> =
             events.iter().copied().filter(|event| lists[1].get(event).is_some_and(|x| *x > 0.0)).collect();
-        match self.event_target(from, to, &emitting) {
-            Ok(Some(name)) => {
-                self.set(to, &n_particle::EVENT_PARTICLES.row, Setting::Fixed(Value::Text(name)))
+        match self.event_targets(from, to, (&events, &emitting)) {
+            Ok(names) if names.is_empty() => {}
+            Ok(names) => {
+                self.set(to, &n_particle::EVENT_PARTICLES.row, Setting::Fixed(Value::Texts(names)));
             }
-            Ok(None) => {}
             Err(why) => {
                 let what = format!("{}.{}", self.scene.name(from), particle::EVENT_TARGET.row.name);
                 let why = format!("{why}; none of its collision events is carried over");
@@ -59,11 +59,17 @@ impl Importer<'_> {
         self.report_procedures(from, &events);
     }
 
-    /// The nParticle that events emit into; `None` for their own.
+    /// The names of the nParticles that events emit into: one for all, or one per event where they differ, empty for their
+    /// own; none where all emit into their own.
     ///
     /// # Errors
-    /// When it is not carried over, or there are several.
-    fn event_target(&self, from: NodeId, to: OwnId, emitting: &[u32]) -> Result<Option<String>, String> {
+    /// When one is not carried over.
+    fn event_targets(
+        &self,
+        from: NodeId,
+        to: OwnId,
+        (events, emitting): (&[u32], &[u32]),
+    ) -> Result<Vec<String>, String> {
         let row = &particle::EVENT_TARGET.row;
         let wires: BTreeMap<u32, NodeId> = self
             .scene
@@ -71,29 +77,25 @@ impl Importer<'_> {
             .into_iter()
             .map(|(event, wire)| (event, wire.from.node))
             .collect();
-        let mut found: Option<OwnId> = None;
-        for event in emitting {
-            let target = match wires.get(event) {
-                None => to,
-                Some(node) => self
-                    .own_of(*node)
-                    .filter(|own| self.graph.node(*own).node_type().is_a(&n_particle::N_PARTICLE))
-                    .ok_or_else(|| {
-                        format!(
-                            "`{}`, which an event emits into, is not carried over",
-                            self.scene.name(*node)
-                        )
-                    })?,
-            };
-            if found.is_some_and(|other| other != target) {
-                return Err(
-                    "its events emit into several nParticles, and `eventParticles` names one".to_owned()
-                );
-            }
-            found = Some(target);
-        }
-        let other = found.filter(|target| *target != to);
-        Ok(other.map(|target| self.graph.node(target).name().to_owned()))
+        let target = |event: &u32| match wires.get(event).filter(|_| emitting.contains(event)) {
+            None => Ok(String::new()),
+            Some(node) => self
+                .own_of(*node)
+                .filter(|own| self.graph.node(*own).node_type().is_a(&n_particle::N_PARTICLE))
+                .map(|own| if own == to { String::new() } else { self.graph.node(own).name().to_owned() })
+                .ok_or_else(|| {
+                    let name = self.scene.name(*node);
+                    format!("`{name}`, which an event emits into, is not carried over")
+                }),
+        };
+        let names = events.iter().map(target).collect::<Result<Vec<String>, String>>()?;
+        let mut of_emitting = events.iter().zip(&names).filter(|(event, _)| emitting.contains(event));
+        let first = of_emitting.next().map_or("", |(_, name)| name);
+        Ok(match of_emitting.all(|(_, name)| name == first) {
+            true if first.is_empty() => Vec::new(),
+            true => vec![first.to_owned()],
+            false => names,
+        })
     }
 
     fn report_procedures(&mut self, from: NodeId, events: &[u32]) {
