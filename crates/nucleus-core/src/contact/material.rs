@@ -12,6 +12,8 @@ use crate::model::ClothModel;
 use crate::model::objects::Cloth;
 use crate::model::vertex_maps::VertexMaps;
 
+/// Contact distance of the particles of two liquids in rest distances, at most: at larger ones they could not mix.
+const LIQUID_DISTANCE: f64 = 0.8;
 /// Smallest contact thickness in metres: certificates need a gap above rounding error.
 pub const MIN_THICKNESS: f64 = 1e-5;
 
@@ -87,6 +89,10 @@ impl<R: Real> ContactMaterial<R> {
         let mobility = if above < 0.0 { [heavier, 1.0] } else { [1.0, heavier] };
         let per_side = |of: fn(&ClothFrame) -> f64| [a, b].map(|side| R::from_f64(of(side)));
         let thickness = a.thickness * max_thickness_factor[0] + b.thickness * max_thickness_factor[1];
+        let thickness = match [&a.liquid, &b.liquid] {
+            [Some(own), Some(other)] => thickness.min(LIQUID_DISTANCE * (own.spacing + other.spacing) / 2.0),
+            _ => thickness,
+        };
         Some(Self {
             thickness: thickness.max(MIN_THICKNESS),
             adhesion_range: adhesion_range(a.stickiness + b.stickiness),

@@ -66,6 +66,7 @@
 //! | Constant | Value | Reason |
 //! |---|--:|---|
 //! | `material::MIN_THICKNESS` | 10 µm | certificates need a gap above rounding error |
+//! | `material::LIQUID_DISTANCE` | 0.8 rest distances | balls of two liquids; at larger ones they could not mix |
 //! | `collider::start_gaps::START_GAP` | 20 µm | a point that starts in a surface begins on its outer side (Classic) |
 //! | `response::DEPENETRATION_SPEED` | 1 m/s | a depth from before the step resolves without a jump |
 //! | `response::ADHESION_RANGE` | 1.5 t | adhesion acts on contacts that have just separated |

@@ -19,13 +19,6 @@ pub fn weight(q: f32) -> f32 {
     (0.25 * outer * outer * outer - inner * inner * inner) / NORM
 }
 
-/// The kernel at a distance, and its derivative.
-#[inline(always)]
-pub fn weight_and_slope(q: f32) -> [f32; 2] {
-    let [outer, inner] = [(2.0 - q).max(0.0), (1.0 - q).max(0.0)];
-    [weight(q), (3.0 * inner * inner - 0.75 * outer * outer) / NORM]
-}
-
 /// The kernel at several distances, and its derivative per rest distance, which is not positive.
 #[inline(always)]
 pub fn weights_and_slopes<W: Lanes<f32>>(q: W) -> [W; 2] {

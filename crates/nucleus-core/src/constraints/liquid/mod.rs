@@ -15,10 +15,11 @@
 //! | the kernel, and that of a half-space | [`kernel`] |
 //! | neighbour search | [`grid`], [`neighbours`], [`near`], [`pair`] |
 //! | density, and the solver of pressure | [`density`] |
-//! | ground plane, colliders and cloth beside a liquid | [`walls`] |
+//! | ground plane, colliders, cloth and other particles beside a liquid | [`walls`], [`ball`] |
 //! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
 //! | how long its time steps are | [`time_step`] |
 
+pub mod ball;
 pub mod density;
 pub mod grid;
 pub mod kernel;
@@ -34,7 +35,7 @@ use nalgebra::Vector3;
 
 use crate::contact::material::ContactMaterial;
 use crate::contact::system::ContactSystem;
-use crate::input::frame::{ClothFrame, FrameInput, Liquid};
+use crate::input::frame::{FrameInput, Liquid};
 use crate::math::Real;
 use crate::model::Model;
 use crate::parallel::disjoint::DisjointSlice;
@@ -53,6 +54,8 @@ use walls::{Corner, Material, Plane, Walls};
 const RECOVERY: f32 = 10.0;
 /// Largest share of it that goes in a time step.
 const MAX_RECOVERY: f32 = 0.5;
+/// Least radius in rest distances of the ball of liquid that a particle of another object counts as.
+const MIN_BALL: f64 = 0.05;
 /// Speed of sound in m/s of a liquid with an `incompressibility` of one half.
 const SOFT_SOUND: f64 = 10.0;
 
@@ -80,12 +83,9 @@ pub struct LiquidSolver {
     interval: Option<LiquidInterval>,
 }
 
-/// The volume in m³ of each particle of an object.
-fn volume_of_particle(settings: &ClothFrame) -> f64 {
-    match &settings.liquid {
-        Some(liquid) => liquid.spacing.powi(3),
-        None => 4.0 / 3.0 * std::f64::consts::PI * settings.thickness.powi(3),
-    }
+/// The radius in metres of a ball of this volume in m³.
+fn radius_of_volume(volume: f64) -> f64 {
+    libm::cbrt(volume * 3.0 / (4.0 * std::f64::consts::PI))
 }
 
 /// One time step of one liquid.
@@ -302,10 +302,14 @@ impl LiquidSolver {
                 Corner { row, inverse_mass: inverse_mass as f32, moved: [0.0; 3] }
             };
             if model.boundary.triangles.is_empty() {
-                let volume = (volume_of_particle(&frame.cloths[other]) * per_metre.powi(3)) as f32;
+                let radius = match &frame.cloths[other].liquid {
+                    Some(liquid) => radius_of_volume(liquid.spacing.powi(3)) * per_metre,
+                    None => (f64::from(material.distance) - 0.5).max(MIN_BALL),
+                };
+                let radius = radius as f32;
                 model
                     .points()
-                    .for_each(|row| walls.particle(place(at_end(row)), corner(row), volume, bounds));
+                    .for_each(|row| walls.particle(place(at_end(row)), corner(row), radius, bounds));
                 continue;
             }
             let first = walls.corners().len() as u32;

@@ -7,13 +7,14 @@
 //! weight S of a sheet of liquid, so that a flat surface weighs as much as the plane. Contact thickness moves both outwards.
 //!
 //! The samples of cloth move with the corners of their triangle, and take up the pressure on them: momentum is kept. A
-//! particle of another object is a sample that weighs as its volume, so that two liquids share the room, and the heavier one
-//! sinks.
+//! particle of another object is a sample that weighs as a ball of liquid, so that two liquids share the room, and the heavier
+//! one sinks.
 
 use std::f32::consts::PI;
 
+use super::ball::BallKernel;
 use super::grid::CellGrid;
-use super::kernel::{REACH, half_space, weight, weight_and_slope};
+use super::kernel::{REACH, half_space, weight};
 use super::pair::Pair;
 
 /// How far behind a surface the liquid begins that it counts as: the layers of particles beside it weigh as much as a
@@ -74,8 +75,8 @@ pub struct Corner {
 struct Sample {
     /// Area of a part of a surface.
     area: f32,
-    /// Volume of a particle, in those of a particle of the liquid; 0 for a part of a surface.
-    volume: f32,
+    /// Of a particle of another object, the place of its kernel in `balls`.
+    ball: Option<u32>,
     offset: f32,
     /// Places in `corners`, and weights; none for colliders.
     corners: Option<[u32; 3]>,
@@ -141,15 +142,17 @@ impl Walls {
         self.moving.cover(triangle, corners, material, bounds);
     }
 
-    /// Adds a particle of another object, of so many volumes of a particle of the liquid, where it is near a box. It moves with
-    /// its corner.
-    pub fn particle(&mut self, place: [f32; 3], corner: Corner, volume: f32, [low, high]: [[f32; 3]; 2]) {
+    /// Adds a particle of another object, as a ball of liquid of this radius, where it is near a box. It moves with its corner.
+    pub fn particle(&mut self, place: [f32; 3], corner: Corner, radius: f32, [low, high]: [[f32; 3]; 2]) {
+        let reach = REACH + radius;
         // A place that is not a number is near nothing.
-        if (0..3).all(|k| low[k] - REACH <= place[k] && place[k] <= high[k] + REACH) {
+        if (0..3).all(|k| low[k] - reach <= place[k] && place[k] <= high[k] + reach) {
             let corner = self.corner(corner);
             let (corners, shares) = (Some([corner; 3]), [1.0, 0.0, 0.0]);
+            let ball = Some(self.moving.ball(radius));
+            self.moving.max_offset = self.moving.max_offset.max(radius);
             self.moving.places.push(place);
-            self.moving.samples.push(Sample { area: 0.0, volume, offset: 0.0, corners, shares });
+            self.moving.samples.push(Sample { area: 0.0, ball, offset: radius, corners, shares });
         }
     }
 
@@ -239,6 +242,8 @@ struct Samples {
     /// In the order of the grid: places, and the squared distance at which each begins to count.
     sorted: Vec<[f32; 4]>,
     max_offset: f32,
+    /// Kernels of particles of other objects, by radius.
+    balls: Vec<BallKernel>,
 }
 
 impl Samples {
@@ -247,6 +252,15 @@ impl Samples {
         self.samples.clear();
         self.sorted.clear();
         self.max_offset = 0.0;
+    }
+
+    /// The place of the kernel of balls of this radius, of which there are as many as objects.
+    fn ball(&mut self, radius: f32) -> u32 {
+        let known = self.balls.iter().position(|ball| ball.radius == radius);
+        known.unwrap_or_else(|| {
+            self.balls.push(BallKernel::new(radius));
+            self.balls.len() - 1
+        }) as u32
     }
 
     /// Covers a triangle with samples, where it is near a box: strips along its longest edge, cut by lines from the corner
@@ -305,7 +319,7 @@ impl Samples {
                 if (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k]) {
                     self.places.push(place);
                     let area = area * share / across as f32;
-                    self.samples.push(Sample { area, volume: 0.0, offset, corners, shares });
+                    self.samples.push(Sample { area, ball: None, offset, corners, shares });
                 }
             }
         }
@@ -337,7 +351,7 @@ impl Samples {
                 if square < limit {
                     let at = self.grid.order()[k];
                     let sample = &self.samples[at as usize];
-                    let (density, slope) = sample.density(square.sqrt().max(NEAREST));
+                    let (density, slope) = sample.density(square.sqrt().max(NEAREST), &self.balls);
                     add(density, apart.map(|x| x * slope), sample.corners.map(|_| at));
                 }
             }
@@ -348,10 +362,10 @@ impl Samples {
 impl Sample {
     /// The density that it adds at a distance, and its derivative over the distance.
     #[inline]
-    fn density(&self, distance: f32) -> (f32, f32) {
-        if self.volume > 0.0 {
-            let [weight, slope] = weight_and_slope(distance);
-            return (self.volume * weight, self.volume * slope / distance);
+    fn density(&self, distance: f32, balls: &[BallKernel]) -> (f32, f32) {
+        if let Some(ball) = self.ball {
+            let [density, slope] = balls[ball as usize].at(distance);
+            return (density, slope / distance);
         }
         let q = (distance + GAP - self.offset).max(0.0);
         let part = self.area / (2.0 * PI * distance);
