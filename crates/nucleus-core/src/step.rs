@@ -17,12 +17,11 @@ use std::ops::ControlFlow;
 
 use crate::constraints::angular_momentum::{keep_angular_momentum, keeps_angular_momentum};
 use crate::constraints::damp::damp;
-use crate::constraints::link::glue::break_links;
+use crate::constraints::link::glue::{break_links, tear_chambers};
 use crate::constraints::link::pass::{begin_links, form_links, relax_links};
 use crate::constraints::link::surface::slide_links;
 use crate::constraints::link::velocity::{apply_link_forces, damp_links, drag_links};
 use crate::constraints::liquid::{LiquidScene, LiquidSolver};
-use crate::constraints::pressure::tear_chambers;
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
 use crate::contact::cloth::pass::{

@@ -1,10 +1,8 @@
 //! The mesh of a shape at a frame: stored in the file, or built by its history and its deformers.
 
-use std::collections::HashMap;
-
 use crate::animation::{Evaluator, Matrix};
 use crate::deform;
-use crate::mesh::{Budget, Built, Poly, embedded, operators, primitives};
+use crate::mesh::{Built, History, Poly, embedded, operators, primitives};
 use crate::omissions::Cause;
 use crate::scene::{NodeId, PlugRef, Wire};
 
@@ -16,24 +14,6 @@ const INPUTS: [&[&str]; 3] = [&["ip", "inputPolymesh"], &["ig", "inputGeometry"]
 
 /// Further inputs of meshes: of a union, of a blend shape, of a cloth.
 const MORE_INPUTS: [&str; 5] = ["inputPoly", "igt", "inputGeomTarget", "imsh", "inputMesh"];
-
-/// A history while it is built.
-#[derive(Debug, Default)]
-pub(crate) struct History {
-    /// Nodes that were passed over, and why.
-    pub(crate) omitted: Vec<(String, Cause)>,
-    /// The points that it may still make.
-    pub(crate) budget: Budget,
-    is_deformed: bool,
-    /// The meshes of nodes that feed several inputs.
-    known: HashMap<NodeId, Result<Poly, String>>,
-}
-
-impl History {
-    fn finish(self, mesh: Result<Poly, String>) -> Result<Built, String> {
-        Ok(Built { mesh: mesh?, omitted: self.omitted, is_deformed: self.is_deformed })
-    }
-}
 
 impl Evaluator<'_> {
     /// The mesh of a shape at a frame.
@@ -183,6 +163,7 @@ mod tests {
 
     use super::*;
     use crate::ascii::SourceText;
+    use crate::mesh::Budget;
     use crate::scene::MayaScene;
 
     /// The mesh of the node `end`, of a plane of 9 points and 4 faces `n0`, with a budget of points.

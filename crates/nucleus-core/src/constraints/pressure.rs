@@ -22,11 +22,8 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::constraints::link::lists::Links;
 use crate::input::frame::Pressure;
-use crate::input::links::LinkSide;
 use crate::math::{Real, Row4};
-use crate::model::ClothModel;
 use crate::model::blocks::{Blocks, triangles_by_block};
 use crate::model::surface::{Faces, Surface};
 use crate::model::topology::components;
@@ -150,7 +147,7 @@ impl PressureModel {
     }
 
     /// The chamber of a row of the cloth, from the first of the state on; `None` where a point has no face.
-    fn chamber_of(&self, cloth: &Range<u32>, row: u32) -> Option<usize> {
+    pub fn chamber_of(&self, cloth: &Range<u32>, row: u32) -> Option<usize> {
         let chamber = *self.chamber.get((row - cloth.start) as usize)?;
         (chamber != NO_CHAMBER).then(|| self.first + chamber as usize)
     }
@@ -267,23 +264,6 @@ impl PressureModel {
             sums.inflow += velocity.dot(&area);
         }
         sums
-    }
-}
-
-/// Sets the holes of all chambers to those at the welds that are torn.
-pub fn tear_chambers<R: Real>(cloths: &[ClothModel<R>], chambers: &mut [Chamber], links: &Links<R>) {
-    chambers.iter_mut().for_each(|chamber| chamber.torn = 0.0);
-    let broken = links.constraints.iter().flat_map(|own| own.links.iter().zip(&own.broken));
-    for link in broken.filter(|(_, broken)| **broken).map(|(link, _)| link) {
-        let [LinkSide::Cloth { cloth, points, .. }, LinkSide::Cloth { cloth: other, .. }] = link.sides else {
-            continue;
-        };
-        if cloth != other || link.fold.is_some() {
-            continue;
-        }
-        let model = &cloths[cloth.index()];
-        let at = model.pressure.chamber_of(&model.blocks.rows(), model.place(points[0].index()));
-        at.into_iter().for_each(|at| chambers[at].torn += link.length * link.length);
     }
 }
 

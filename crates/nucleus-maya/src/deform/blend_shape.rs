@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::animation::Evaluator;
-use crate::history::History;
+use crate::mesh::History;
 use crate::mesh::{Components, InputMesh, Poly};
 use crate::omissions::Cause;
 use crate::scene::{NodeId, Set};

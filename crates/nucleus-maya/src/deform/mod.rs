@@ -10,7 +10,7 @@ mod blend_shape;
 mod skin_cluster;
 
 use crate::animation::Evaluator;
-use crate::history::History;
+use crate::mesh::History;
 use crate::mesh::{InputMesh, Poly};
 use crate::omissions::Cause;
 use crate::scene::NodeId;

@@ -8,6 +8,7 @@
 //! | operators: extrude, smooth, merge...                | `operators.rs`, `subdivide.rs`, `extrude.rs`, `bevel.rs` |
 //! | the mesh of a shape at a frame                      | `history.rs`, one level up |
 //! | the most points of a history                        | `budget.rs`        |
+//! | a history while it is built                         | `under_way.rs`     |
 //! | a mesh as an OBJ file                               | [`obj_text`]       |
 //!
 //! **Invariant:** points are in the space of the shape, in centimetres, and keep Maya's numbers as far as those are known.
@@ -21,13 +22,15 @@ pub(crate) mod operators;
 mod poly;
 pub(crate) mod primitives;
 mod subdivide;
+mod under_way;
 
+#[cfg(test)]
 pub(crate) use budget::Budget;
 pub use obj::obj_text;
 pub use poly::{Built, Components, Poly};
 pub(crate) use primitives::own_primitive;
+pub(crate) use under_way::History;
 
-use crate::history::History;
 use crate::scene::{MayaScene, NodeId, PlugRef};
 
 /// Builds the mesh that flows from a plug, and notes what its history leaves out.

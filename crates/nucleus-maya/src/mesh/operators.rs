@@ -283,7 +283,7 @@ fn borders(mesh: &Poly) -> Vec<Vec<u32>> {
         let (mut path, mut at) = (Vec::new(), Some(start));
         while let Some(point) = at {
             if let Some(first) = places.get(&point) {
-                // The path is back at a point: what lies between is a border.
+                // The path is back at a point: the points between are a border.
                 let border = path.split_off(*first);
                 for point in &border {
                     places.remove(point);

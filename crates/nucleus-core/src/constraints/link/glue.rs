@@ -13,8 +13,8 @@ use crate::input::PointId;
 use crate::input::frame::FrameInput;
 use crate::input::links::{ConstraintFrame, Link, LinkSide};
 use crate::math::Real;
-use crate::model::Model;
-use crate::state::State;
+use crate::model::{ClothModel, Model};
+use crate::state::{Chamber, State};
 
 use super::lists::{ConstraintLinks, Links};
 
@@ -102,4 +102,21 @@ pub fn break_links<R: Real>(
         any |= own.has_folds() && own.break_folds(scene, state, settings, time);
     }
     any
+}
+
+/// Sets the holes of all chambers to those at the welds that are torn.
+pub fn tear_chambers<R: Real>(cloths: &[ClothModel<R>], chambers: &mut [Chamber], links: &Links<R>) {
+    chambers.iter_mut().for_each(|chamber| chamber.torn = 0.0);
+    let broken = links.constraints.iter().flat_map(|own| own.links.iter().zip(&own.broken));
+    for link in broken.filter(|(_, broken)| **broken).map(|(link, _)| link) {
+        let [LinkSide::Cloth { cloth, points, .. }, LinkSide::Cloth { cloth: other, .. }] = link.sides else {
+            continue;
+        };
+        if cloth != other || link.fold.is_some() {
+            continue;
+        }
+        let model = &cloths[cloth.index()];
+        let at = model.pressure.chamber_of(&model.blocks.rows(), model.place(points[0].index()));
+        at.into_iter().for_each(|at| chambers[at].torn += link.length * link.length);
+    }
 }

@@ -20,7 +20,7 @@ pub(super) struct Correction<R> {
     moved: [R; 3],
     /// The part of it without velocity.
     depenetration: [R; 3],
-    /// Whether that part becomes velocity where another contact reverses it: what lies between the two bears a load then.
+    /// Whether that part becomes velocity where another contact reverses it: cloth between the two bears a load then.
     bears_load: bool,
 }
 
