@@ -74,17 +74,12 @@ fn mean_radius(points: &[Vec3]) -> f64 {
     points.iter().map(|point| (point - centre).norm()).sum::<f64>() / points.len() as f64
 }
 
-// EVIDENCE: N1.2-1  a mesh that can tear is as it was until it does, and its air leaves through the tear
 #[test]
-fn a_balloon_that_can_tear_holds_its_air_until_it_does() {
-    let rip = |glue: f64| {
-        format!(
-            "),\n\"rip\": dynamicConstraint(constraintType: tearableSurface, components: [\"balloon\"], glueStrength: {glue}),"
-        )
-    };
+fn a_balloon_that_can_tear_holds_its_air() {
+    let rip = "),\n\"rip\": dynamicConstraint(constraintType: tearableSurface, components: [\"balloon\"], glueStrength: 1),";
     let frames = 24;
     let whole = film_of_a_ball_of_gas("),", frames);
-    let held = film_of_a_ball_of_gas(&rip(1.0), frames);
+    let held = film_of_a_ball_of_gas(rip, frames);
     let moved = (mean(&held[frames - 1]) - mean(&held[0])).norm();
     // Air inside moves nothing as a whole. Measured: 15 mm, and metres with a chamber for each face.
     assert!(moved < 0.02, "{moved} m");

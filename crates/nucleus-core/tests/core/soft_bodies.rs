@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::scenes::{Vec3, frame};
+use crate::scenes::{Vec3, frame, grid};
 use nucleus_core::{
-    BendSolver, Bending, Cloth, ClothFrame, ClothId, ClothLists, Faces, FrameInput, InputAttract, InputMesh,
-    Mass, ModelBuilder, Pin, PointId, Pressure, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView,
-    Surface,
+    BendSolver, Bending, BuildError, Cloth, ClothFrame, ClothId, ClothLists, Faces, FrameInput, InputAttract,
+    InputMesh, Mass, ModelBuilder, Pin, PointId, Pressure, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver,
+    StateView, Surface,
 };
 use proptest::prelude::*;
 
@@ -120,6 +120,16 @@ fn volume(solver: &Solver<f32>, surface: &Surface) -> f64 {
 
 fn mean(x: &[Vec3]) -> Vec3 {
     x.iter().sum::<Vec3>() / x.len() as f64
+}
+
+#[test]
+fn points_that_are_split_off_one_that_is_no_original_are_refused() {
+    let sheet = || Cloth::new(grid(3, 3, Vec3::x(), Vec3::z()), Mass::PerArea(0.2), LINKS);
+    for (split_off, point, points) in [(vec![8], 8, 8), (vec![9], 9, 8), (vec![0; 10], 0, 0)] {
+        let refused = ModelBuilder::new().cloth(Cloth { split_off, ..sheet() });
+        assert_eq!(refused, Err(BuildError::BadSplit { point, points }));
+    }
+    assert!(ModelBuilder::new().cloth(Cloth { split_off: vec![0], ..sheet() }).is_ok());
 }
 
 /// Laplace: p R = 2 N; Hooke in the plane with Poisson's ratio 1/3 of a triangle lattice: N = K ε / (1 - 1/3).
