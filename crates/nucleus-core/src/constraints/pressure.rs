@@ -1,10 +1,11 @@
 //! Pressure: the faces of a mesh are pushed along their normals, by hand or by the gas inside.
 //!
-//! Every unconnected part of the mesh is a chamber; a mesh that can tear counts as it was before it was split. With a_i = ∂V/∂x_i, a third of the area vectors round point i, a gauge
-//! pressure p is the force p a_i, so one time step moves point i by w_i a_i λ with λ = h² p. The gas follows the ideal law
-//! at constant temperature, p = K (n V_0 / V - 1), where n V_0 is the volume of its air at ambient pressure and K the bulk
-//! modulus. The step is implicit: λ solves λ = h² p(V + s λ) with s = Σ w_i |a_i|², which has one root and is stable for
-//! every K (an XPBD constraint, Macklin et al. 2016, with the gas law as its energy).
+//! Every unconnected part of the mesh is a chamber; a mesh that can tear counts as it was before it was split. With
+//! a_i = ∂V/∂x_i, a third of the area vectors round point i, a gauge pressure p is the force p a_i, so one time step moves
+//! point i by w_i a_i λ with λ = h² p. The gas follows the ideal law at constant temperature, p = K (n V_0 / V - 1), where
+//! n V_0 is the volume of its air at ambient pressure and K the bulk modulus. The step is implicit: λ solves
+//! λ = h² p(V + s λ) with s = Σ w_i |a_i|², which has one root and is stable for every K (an XPBD constraint, Macklin et al.
+//! 2016, with the gas law as its energy).
 //!
 //! A boundary loop of the mesh is a hole. Sealed, it is capped: the cap carries the pressure to its rim. Open, the missing
 //! cap leaves a net force -p A (thrust), and air streams through at the speed of Bernoulli's law, plus the air that the
@@ -18,7 +19,7 @@
 
 mod holes;
 
-use std::ops::Range;
+use std::borrow::Cow;
 
 use nalgebra::Vector3;
 
@@ -96,8 +97,8 @@ struct Sums {
 }
 
 impl PressureModel {
-    /// Compiles the chambers of a mesh; `place` gives the solver's row of a point.
-    /// The last points are those that were `split_off` others.
+    /// Compiles the chambers of a mesh; `place` gives the solver's row of a point, and `split_off` the point that each of the
+    /// last points was split off.
     pub fn new(
         surface: &Surface,
         split_off: &[u32],
@@ -146,9 +147,9 @@ impl PressureModel {
         self.holes.is_empty() || matches!(pressure, Pressure::Gas { sealed: true, .. })
     }
 
-    /// The chamber of a row of the cloth, from the first of the state on; `None` where a point has no face.
-    pub fn chamber_of(&self, cloth: &Range<u32>, row: u32) -> Option<usize> {
-        let chamber = *self.chamber.get((row - cloth.start) as usize)?;
+    /// The chamber of a point in the state, given how far its row is from the first of the cloth; `None` without a face.
+    pub fn chamber_of(&self, at: u32) -> Option<usize> {
+        let chamber = *self.chamber.get(at as usize)?;
         (chamber != NO_CHAMBER).then(|| self.first + chamber as usize)
     }
 
@@ -268,12 +269,15 @@ impl PressureModel {
 }
 
 /// The mesh as it was before its last points were split off others.
-fn unsplit(surface: &Surface, split_off: &[u32]) -> Surface {
+fn unsplit<'a>(surface: &'a Surface, split_off: &[u32]) -> Cow<'a, Surface> {
+    if split_off.is_empty() {
+        return Cow::Borrowed(surface);
+    }
     let kept = surface.positions.len() - split_off.len();
     let original = |&point: &u32| split_off.get((point as usize).wrapping_sub(kept)).map_or(point, |&at| at);
     let mut faces = Faces::default();
     surface.faces.iter().for_each(|face| faces.push(&face.iter().map(original).collect::<Vec<_>>()));
-    Surface { positions: surface.positions.clone(), faces }
+    Cow::Owned(Surface { positions: surface.positions.clone(), faces })
 }
 
 /// What pushes a cloth from within in one time step.

@@ -7,12 +7,11 @@
 //!
 //! **One push.** A contact whose gap is below its thickness moves its points apart along the normal, each by inverse
 //! mass times barycentric weight, in a Gauss-Seidel sweep. The part that undoes motion of this step changes velocity;
-//! a depth from before the step is resolved at 1 m/s, without velocity. Where cloths overlap from the
-//! start, what another contact reverses of that has no velocity either, or they would throw each other off; between other
-//! cloths it has, because layers bear loads by it. Coulomb friction is a correction along the
-//! surface, at most friction times push ([`response`]). Contacts among cloths carry a persistent friction anchor, so that
-//! stacks do not creep. Adhesion (stickiness) removes a share of the separation speed; restitution is applied to velocities
-//! after the step ([`restitution`]).
+//! a depth from before the step is resolved at 1 m/s, without velocity. Where cloths overlap from the start, what another
+//! contact reverses of that has no velocity either, or they would throw each other off; between other cloths it has, because
+//! layers bear loads by it. Coulomb friction is a correction along the surface, at most friction times push ([`response`]).
+//! Contacts among cloths carry a persistent friction anchor, so that stacks do not creep. Adhesion (stickiness) removes a share
+//! of the separation speed; restitution is applied to velocities after the step ([`restitution`]).
 //!
 //! **One guarantee.** All motion within a time step is linear. For a fixed direction n, the gap between two elements is
 //! the minimum over our points minus the maximum over theirs, and so a concave function of time. If it is positive at

@@ -1,10 +1,10 @@
 //! Particles that fill a box or the volume of a closed mesh, in a cubic grid.
 //!
 //! Each particle stands for a cube of the grid's spacing, so a box is filled by as many cubes as fit into it, in its
-//! middle, and the volume of a liquid is that of these cubes. A mesh is filled line by line: a line along x crosses a closed surface an even
-//! number of times, and every second stretch between crossings is inside. Where the mesh is that of a cloth or a collider, the
-//! particles begin outside of its contact distance: contact would push them out of it at the start, and them and the cloth
-//! away from each other.
+//! middle, and the volume of a liquid is that of these cubes. A mesh is filled line by line: a line along x crosses a closed
+//! surface an even number of times, and every second stretch between crossings is inside. Where the mesh is that of a cloth or
+//! a collider, the particles begin outside of its contact distance: contact would push them out of it at the start, and them
+//! and the cloth away from each other.
 
 use nalgebra::Vector3;
 use nucleus_core::Surface;

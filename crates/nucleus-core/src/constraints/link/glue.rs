@@ -116,7 +116,7 @@ pub fn tear_chambers<R: Real>(cloths: &[ClothModel<R>], chambers: &mut [Chamber]
             continue;
         }
         let model = &cloths[cloth.index()];
-        let at = model.pressure.chamber_of(&model.blocks.rows(), model.place(points[0].index()));
+        let at = model.pressure.chamber_of(model.place(points[0].index()) - model.points().start);
         at.into_iter().for_each(|at| chambers[at].torn += link.length * link.length);
     }
 }

@@ -55,7 +55,9 @@ const RECOVERY: f32 = 10.0;
 /// Largest share of it that goes in a time step.
 const MAX_RECOVERY: f32 = 0.5;
 /// Least radius in rest distances of the ball of liquid that a particle of another object counts as.
-const MIN_BALL: f64 = 0.05;
+const MIN_BALL: f32 = 0.05;
+/// Radius of a ball of the volume of a cube, in sides of the cube: the third root of 3 / 4 pi.
+const RADIUS_OF_CUBE: f64 = 0.620_350_490_899_400_1;
 /// Speed of sound in m/s of a liquid with an `incompressibility` of one half.
 const SOFT_SOUND: f64 = 10.0;
 
@@ -81,11 +83,6 @@ pub struct LiquidSolver {
     topology: u64,
     /// The time step that it is in; `None` for a cloth that is no liquid.
     interval: Option<LiquidInterval>,
-}
-
-/// The radius in metres of a ball of this volume in m³.
-fn radius_of_volume(volume: f64) -> f64 {
-    libm::cbrt(volume * 3.0 / (4.0 * std::f64::consts::PI))
 }
 
 /// One time step of one liquid.
@@ -303,10 +300,10 @@ impl LiquidSolver {
             };
             if model.boundary.triangles.is_empty() {
                 let radius = match &frame.cloths[other].liquid {
-                    Some(liquid) => radius_of_volume(liquid.spacing.powi(3)) * per_metre,
-                    None => (f64::from(material.distance) - 0.5).max(MIN_BALL),
+                    Some(liquid) => (RADIUS_OF_CUBE * liquid.spacing * per_metre) as f32,
+                    // Up to where the liquid rests on it, which begins half a rest distance before its particles.
+                    None => (material.distance - 0.5).max(MIN_BALL),
                 };
-                let radius = radius as f32;
                 model
                     .points()
                     .for_each(|row| walls.particle(place(at_end(row)), corner(row), radius, bounds));

@@ -89,15 +89,6 @@ impl<R: Real> ContactCache<R> {
         (point_face.len() + edge_edge.len() + point_edge.len() + point_point.len()) as u64
     }
 
-    /// Marks the materials of contacts that overlap.
-    pub(super) fn mark_overlapping(&self, marks: &mut [bool]) {
-        let Self { point_face, edge_edge, point_edge, point_point } = self;
-        point_face.mark_overlapping(marks);
-        edge_edge.mark_overlapping(marks);
-        point_edge.mark_overlapping(marks);
-        point_point.mark_overlapping(marks);
-    }
-
     /// The number of contacts that keep less than the cloth's thickness, because their elements are neighbours at
     /// rest.
     pub fn count_rest_limited(&self) -> u64 {
@@ -175,6 +166,14 @@ impl<R: Real> ContactCache<R> {
         let pairs = pairs.chain(edge_edge.of_each_task().map(move |contact| contact.cloths(materials)));
         let pairs = pairs.chain(point_edge.of_each_task().map(move |contact| contact.cloths(materials)));
         pairs.chain(point_point.of_each_task().map(move |contact| contact.cloths(materials)))
+    }
+
+    /// The pairs of cloths of all contacts that overlap, given the number of materials.
+    pub(super) fn overlapping_pairs(&self, materials: usize) -> impl Iterator<Item = [usize; 2]> {
+        let Self { point_face, edge_edge, point_edge, point_point } = self;
+        let pairs = point_face.overlapping_pairs(materials).chain(edge_edge.overlapping_pairs(materials));
+        let pairs = pairs.chain(point_edge.overlapping_pairs(materials));
+        pairs.chain(point_point.overlapping_pairs(materials))
     }
 
     /// Truncates the motion of every contact without certificate, one after the other. Returns their number.

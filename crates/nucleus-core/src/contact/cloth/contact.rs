@@ -258,11 +258,6 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         step.materials.get(self.params.kind.material() as usize)?.as_ref()
     }
 
-    /// The index of the contact material of the two cloths.
-    pub(super) fn material_index(&self) -> usize {
-        self.params.kind.material() as usize
-    }
-
     /// Whether this pass resolves it.
     #[inline(always)]
     pub(super) fn is_resolved(&self, step: &ClothStep<'_, R>) -> bool {

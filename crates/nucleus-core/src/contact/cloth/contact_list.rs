@@ -133,10 +133,9 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         tasks.map(|task| pool.least(task.contacts(), ratio)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Marks the materials of contacts that overlap.
-    pub fn mark_overlapping(&self, marks: &mut [bool]) {
-        let overlapping = self.iter().filter(|contact| contact.overlaps());
-        overlapping.for_each(|contact| marks[contact.material_index()] = true);
+    /// The pair of cloths of each contact that overlaps, given the number of materials.
+    pub fn overlapping_pairs(&self, materials: usize) -> impl Iterator<Item = [usize; 2]> {
+        self.iter().filter(|contact| contact.overlaps()).map(move |contact| contact.cloths(materials))
     }
 
     /// Renumbers the rows of points; removes contacts of a point without a number.

@@ -135,19 +135,13 @@ impl<R: Real> ClothContacts<R> {
 
     /// Finds which cloths still overlap: those with such a contact, and those that intersect. After a search for all contacts.
     pub(super) fn find_overlapping(&mut self) {
-        let Self { overlapping, cache, untangling, .. } = self;
+        let Self { materials, overlapping, cache, untangling, .. } = self;
         if overlapping.contains(&true) || untangling.any() {
-            let cloths = overlapping.len().isqrt();
+            let cloths = materials.len().isqrt();
             overlapping.fill(false);
-            cache.mark_overlapping(overlapping);
-            for &[a, b] in untangling.cloth_pairs() {
-                overlapping[a as usize * cloths + b as usize] = true;
-            }
-            for [ours, theirs] in
-                (0..cloths).flat_map(|a| (0..a).map(move |b| [a * cloths + b, b * cloths + a]))
-            {
-                let either = overlapping[ours] || overlapping[theirs];
-                (overlapping[ours], overlapping[theirs]) = (either, either);
+            let intersecting = untangling.cloth_pairs().iter().map(|pair| pair.map(|cloth| cloth as usize));
+            for [a, b] in cache.overlapping_pairs(materials.len()).chain(intersecting) {
+                (overlapping[a * cloths + b], overlapping[b * cloths + a]) = (true, true);
             }
         }
     }
