@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use nalgebra::Vector3;
 use nucleus_audit::CollisionMesh;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, Encode, FrameInput, ParticleAge, ParticleLook, PointId, Reader, Real,
+    ClothId, ColliderId, ContactState, Encode, FrameInput, Particle, ParticleLook, PointId, Reader, Real,
     RestoreError, Solver, StateView, StepObserver, StepReport, SubstepIndex, add_checksum, verify_checksum,
 };
 
@@ -159,7 +159,7 @@ impl<R: Real> Simulation<R> {
         observers: &mut Observers,
     ) -> StepReport {
         if call.resets {
-            self.runs[call.nucleus] = NucleusRun::new(&self.program, call.nucleus, self.threads);
+            self.runs[call.nucleus].reset(&self.program, call.nucleus, self.threads);
             observers.planes.borrow_mut().reset(call.nucleus);
         }
         let (before, rest) = self.runs.split_at_mut(call.nucleus);
@@ -317,8 +317,8 @@ impl<R: Real> StateView for Simulation<R> {
         self.combined().orientations(cloth, out);
     }
 
-    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
-        self.combined().ages(cloth, out);
+    fn particles(&self, cloth: ClothId, out: &mut Vec<Particle>) {
+        self.combined().particles(cloth, out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

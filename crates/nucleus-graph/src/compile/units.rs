@@ -9,7 +9,7 @@ use nucleus_core::Surface;
 
 use crate::attributes::{Choice, nucleus};
 use crate::diagnostic::Findings;
-use crate::graph::NodeId;
+use crate::graph::{NodeId, Setting};
 use crate::scene::document::{Scene, TimeSpan};
 
 /// `resistanceModel: classic`.
@@ -71,7 +71,13 @@ pub(super) fn start_frame(scene: &Scene, nucleus: NodeId, findings: &mut Finding
         let message = format!("`startFrame` of `{}` comes after the last frame, {end}", node.name());
         findings.error(&place, message);
     } else if start_frame > start as f64 {
-        return start_frame.ceil() as i64;
+        let first = start_frame.ceil();
+        if first > start_frame {
+            let name = node.name();
+            let message = format!("`startFrame` of `{name}` is {start_frame}: it starts at frame {first}");
+            findings.warning(&place, message).help("nuclei start at whole frames");
+        }
+        return first as i64;
     } else if start_frame < start as f64 {
         let message = format!("frames before {start}, where the scene's time begins, are not solved");
         findings.warning(&place, message);
@@ -79,10 +85,15 @@ pub(super) fn start_frame(scene: &Scene, nucleus: NodeId, findings: &mut Finding
     start
 }
 
-/// Warns of a nucleus without a time input, which is never solved.
+/// Warns of a nucleus whose time has no input or stands still: it is never solved.
 pub(super) fn check_time_input(scene: &Scene, nucleus: NodeId, findings: &mut Findings) {
-    if scene.graph.source(nucleus, &nucleus::CURRENT_TIME).is_none() {
-        let name = scene.graph.node(nucleus).name();
+    let node = scene.graph.node(nucleus);
+    let is_still = match node.setting(&nucleus::CURRENT_TIME) {
+        Some(Setting::Fixed(_)) | None => true,
+        Some(Setting::Keyed(_) | Setting::Parts(_)) => false,
+    };
+    if is_still && scene.graph.source(nucleus, &nucleus::CURRENT_TIME).is_none() {
+        let name = node.name();
         let message = format!("nothing is connected to `{name}.currentTime`: nothing is solved");
         let warning = findings.warning(&scene.source.place(name), message);
         warning.help(format!("connect `time1.outTime` to `{name}.currentTime`"));

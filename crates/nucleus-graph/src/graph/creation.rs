@@ -275,7 +275,7 @@ impl Graph {
         Ok(member)
     }
 
-    /// Connects the clock to a node, and to its nucleus if that has none.
+    /// Connects the clock to a node, and to its nucleus if that has neither a connection nor a time of its own.
     fn drive_by_time(
         &mut self,
         node: NodeId,
@@ -285,6 +285,7 @@ impl Graph {
         let out_time = Plug::new(self.clock(), &time::OUT_TIME);
         if let Some(nucleus) = nucleus
             && self.source(nucleus, &nucleus::CURRENT_TIME).is_none()
+            && self.node(nucleus).setting(&nucleus::CURRENT_TIME).is_none()
         {
             self.connect(out_time, Plug::new(nucleus, &nucleus::CURRENT_TIME))?;
         }

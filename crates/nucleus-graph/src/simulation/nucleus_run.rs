@@ -51,6 +51,12 @@ impl<R: Real> NucleusRun<R> {
         }
     }
 
+    /// Returns to the initial state of nucleus number `index`. Its time goes on.
+    pub(super) fn reset(&mut self, program: &Program, index: usize, threads: usize) {
+        let Self { solver, attachments, .. } = Self::new(program, index, threads);
+        (self.solver, self.attachments) = (solver, attachments);
+    }
+
     /// Evaluates the time of nucleus number `index` at a scene frame. `None` keeps its state: the nucleus is disabled, it
     /// has not started, its time does not advance, or advances by more than `frameJumpLimit`.
     pub(super) fn evaluate(&mut self, program: &Program, index: usize, frame: f64) -> Option<SolverCall> {

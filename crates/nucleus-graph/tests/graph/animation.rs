@@ -112,6 +112,48 @@ fn a_nucleus_that_is_off_or_has_no_time_keeps_its_state() {
 }
 
 #[test]
+fn a_time_of_its_own_drives_a_nucleus() {
+    let run = |time: &str| falling("start: 1, end: 13, fps: 24", time);
+    let half = run("currentTime: keys([(1, 1), (13, 7)])");
+    assert!(half.warnings().is_empty(), "{:?}", half.warnings());
+    let (half, whole) = (heights(&half), heights(&run("")));
+    // Half of the time in as many steps.
+    assert!((half[11] / whole[5] - 1.0).abs() < 0.1, "{} after half of the time, {}", half[11], whole[5]);
+    let frozen = run("currentTime: 5");
+    assert_eq!(last(&frozen), 0.0);
+    assert!(frozen.warnings().iter().any(|warning| warning.message.contains("nothing is solved")));
+}
+
+/// The frames of a run and the height of its particle `q` after each.
+fn falls(time: &str, nodes: &str) -> Vec<(i64, f64)> {
+    let falling = "nParticle(position0: [(0, 9, 0)], drag: 0, nucleus: \"n\")";
+    let program = program(&format!("Scene(time: ({time}), nodes: {{{nodes}, \"q\": {falling}}})"));
+    let kind = program.objects().iter().find(|object| object.name == "q").map(|object| object.kind);
+    let Some(ObjectKind::Cloth(id)) = kind else { panic!("it is an object") };
+    let mut run = Simulation::<f32>::new(&program, 1);
+    let mut heights = Vec::new();
+    while !run.is_done() {
+        let frame = run.advance(&mut ()).frame;
+        heights.push((frame, run.state().point(id, 0).y));
+    }
+    heights
+}
+
+#[test]
+fn a_nucleus_that_starts_later_than_another_one_falls_as_it_does_alone() {
+    let other = r#""a": nucleus(), "p": nParticle(position0: [(5, 9, 0)], nucleus: "a")"#;
+    for (start, every) in [(5, 1.0), (5, 0.5), (3, 2.0)] {
+        let time = format!("start: 1, end: 11, fps: 24, every: {every}");
+        let own = format!(r#""n": nucleus(startFrame: {start})"#);
+        let found = falls(&time, &format!("{other}, {own}"));
+        let (waits, moves) = found.split_at(found.iter().filter(|one| one.0 <= start).count());
+        assert!(waits.iter().all(|one| one.1 == 9.0), "{waits:?}");
+        assert_eq!(moves, falls(&time, &own), "startFrame {start}, every {every}");
+        assert!(moves.len() >= 4 && moves[3].1 < 8.9, "{moves:?}");
+    }
+}
+
+#[test]
 fn a_jump_of_time_beyond_the_limit_is_not_solved() {
     let jump = |limit: u32| {
         program(&of_nodes(
