@@ -201,11 +201,12 @@ impl EvaluationInterval<'_> {
             state.emitted = 0;
         }
         let total = state.remainder + (rates[0] + rates[1]) / 2.0;
-        if total.is_nan() || total < 1.0 {
+        // The sum of the shares of many intervals may miss a whole number by rounding.
+        let count = (total + ROUNDING * total.abs().max(1.0)).floor();
+        if count.is_nan() || count < 1.0 {
             state.remainder = if total.is_finite() { total } else { 0.0 };
             return;
         }
-        let count = total.floor();
         let first = state.emitted;
         let remainder = std::mem::replace(&mut state.remainder, total - count);
         state.emitted = first.saturating_add(count as u64);
@@ -243,6 +244,9 @@ impl EvaluationInterval<'_> {
         }
     }
 }
+
+/// A particle that is due this share of a particle after the end of an interval is born at its end.
+const ROUNDING: f64 = 1e-9;
 
 /// When the number of births reaches `births`, as a share of the interval; the rate goes linearly from the first to the
 /// second, in particles per interval.
