@@ -70,6 +70,29 @@ fn invalid_attributes_are_replaced_and_reported_with_their_object() {
 }
 
 #[test]
+fn an_attribute_below_zero_counts_as_zero_and_is_reported() {
+    type Plant = fn(&mut FrameInput, f64);
+    let cloth: [Plant; 6] = [
+        |input, x| input.cloths[0].drag = x,
+        |input, x| input.cloths[0].damp = x,
+        |input, x| input.cloths[0].friction = x,
+        |input, x| input.cloths[0].thickness = x,
+        |input, x| input.cloths[0].stretch_resistance = x,
+        |input, x| input.cloths[0].rest_length_scale = x,
+    ];
+    for plant in cloth {
+        let (hash, _, first, finite) = run(|input| plant(input, -5.0));
+        assert_eq!((first, finite), (Some(InvalidInput::Cloth(ClothId(0))), true));
+        assert_eq!(hash, run(|input| plant(input, 0.0)).0);
+    }
+    let (hash, _, first, _) = run(|input| input.air_density = -1.0);
+    assert_eq!((hash, first), (run(|input| input.air_density = 0.0).0, Some(InvalidInput::Setting)));
+    let (hash, _, first, _) = run(|input| input.colliders[0].friction = -1.0);
+    let collider = Some(InvalidInput::Collider(ColliderId(0)));
+    assert_eq!((hash, first), (run(|input| input.colliders[0].friction = 0.0).0, collider));
+}
+
+#[test]
 fn a_frame_without_a_valid_duration_changes_nothing() {
     for duration in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let (builder, input) = drape(9, 24.0);

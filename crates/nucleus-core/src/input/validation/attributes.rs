@@ -45,6 +45,7 @@ pub(super) fn sanitize_settings(frame: &mut FrameInput) -> bool {
         (&mut frame.layer_range, default.layer_range),
         (&mut frame.self_collision_iterations, default.self_collision_iterations),
     ]);
+    replaced |= raise_to_zero([&mut frame.air_density, &mut frame.wind_noise]);
     replaced |= frame.substeps > MAX_SUBSTEPS;
     frame.substeps = frame.substeps.min(MAX_SUBSTEPS);
     if let ResistanceModel::Physical { evaluations } = &mut frame.resistance {
@@ -57,7 +58,8 @@ pub(super) fn sanitize_settings(frame: &mut FrameInput) -> bool {
             (&mut plane.friction, 0.0),
             (&mut plane.stickiness, 0.0),
         ]);
-        if !is_in_range(&plane.origin) || !is_in_range(&plane.normal) {
+        replaced |= raise_to_zero([&mut plane.bounce, &mut plane.friction, &mut plane.stickiness]);
+        if !is_in_range(&plane.origin) || !is_in_range(&plane.normal) || plane.normal == Vector3::zeros() {
             frame.plane = None;
             replaced = true;
         }
@@ -102,6 +104,28 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.input_attract.motion_drag, 0.0),
         (&mut cloth.self_collision.thickness, default.self_collision.thickness),
     ]);
+    let below_zero = raise_to_zero([
+        &mut cloth.stretch_resistance,
+        &mut cloth.compression_resistance,
+        &mut cloth.shear_resistance,
+        &mut cloth.bend_resistance,
+        &mut cloth.rest_length_scale,
+        &mut cloth.stretch_damp,
+        &mut cloth.damp,
+        &mut cloth.drag,
+        &mut cloth.tangential_drag,
+        &mut cloth.lift,
+        &mut cloth.thickness,
+        &mut cloth.friction,
+        &mut cloth.stickiness,
+        &mut cloth.bounce,
+        &mut cloth.collide_strength,
+        &mut cloth.rigidity,
+        &mut cloth.deform_resistance,
+        &mut cloth.input_attract.strength,
+        &mut cloth.input_attract.damp,
+        &mut cloth.self_collision.thickness,
+    ]);
     let tethers = cloth.tethers.as_mut().is_some_and(|scale| sanitize_numbers([(scale, 1.0)]));
     let fields = tethers
         | cloth.field.as_mut().is_some_and(sanitize_field)
@@ -111,10 +135,17 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
     let yields = sanitize_yields(cloth);
     vectors
         | numbers
+        | below_zero
         | yields
         | fields
         | sanitize_stiffness(&mut cloth.stiffness)
         | sanitize_pressure(&mut cloth.pressure)
+}
+
+/// Replaces numbers below zero by zero, of attributes that would create energy or push the wrong way below it.
+fn raise_to_zero<const N: usize>(numbers: [&mut f64; N]) -> bool {
+    let below = numbers.into_iter().filter(|number| **number < 0.0);
+    below.map(|number| *number = 0.0).count() > 0
 }
 
 /// Without a valid limit nothing yields. One below zero would yield at rest; a link cannot be shorter than nothing.
@@ -199,6 +230,13 @@ pub(super) fn sanitize_collider_settings(collider: &mut ColliderFrame) -> bool {
             (&mut collider.layer, 0.0),
             (&mut collider.push_out.share, 0.0),
             (&mut collider.push_out.radius, 0.0),
+        ])
+        | raise_to_zero([
+            &mut collider.thickness,
+            &mut collider.friction,
+            &mut collider.stickiness,
+            &mut collider.bounce,
+            &mut collider.collide_strength,
         ])
 }
 
