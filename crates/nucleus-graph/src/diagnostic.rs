@@ -110,8 +110,19 @@ impl Findings {
 /// Longest text of a diagnostic in characters.
 const MAX_TEXT: usize = 600;
 
-/// A text without its middle, if it is too long: a scene may hold names of megabytes.
+/// A text that can be shown in a terminal: without its middle if it is too long, because a scene may hold names of megabytes,
+/// and with escapes for characters that control the terminal or turn the direction of the text.
 fn bounded(text: String) -> String {
+    let turns =
+        |c: char| matches!(c, '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let controls = |c: char| (c.is_control() && c != '\n') || turns(c);
+    let text = match text.contains(controls) {
+        true => text
+            .chars()
+            .flat_map(|c| if controls(c) { c.escape_unicode().collect() } else { vec![c] })
+            .collect(),
+        false => text,
+    };
     let characters = text.chars().count();
     if characters <= MAX_TEXT {
         return text;
@@ -174,6 +185,15 @@ mod tests {
         }
         assert_eq!(changes("BEND", "bend"), 0);
         assert_eq!(changes("", "bend"), 4);
+    }
+
+    #[test]
+    fn characters_that_control_a_terminal_are_shown_as_escapes() {
+        let mut findings = Findings::new(PathBuf::new());
+        findings.error(&(0..0), "`p\u{1b}[31m\u{7}\u{202e}é`\nnext").help("\u{9b}2J");
+        let found = findings.in_order();
+        assert_eq!(found[0].message, "`p\\u{1b}[31m\\u{7}\\u{202e}é`\nnext");
+        assert_eq!(found[0].help.as_deref(), Some("\\u{9b}2J"));
     }
 
     #[test]
