@@ -134,6 +134,12 @@ impl SceneFile {
 /// If its name does not end with `.mcap`: `nucleus render` would replace a cache that has the name of a picture.
 pub fn named_as_cache(out: &Path) -> Result<&Path> {
     ensure!(
+        out.file_name().is_some() && !out.is_dir(),
+        "`{}` is a folder: write `-o {}`",
+        out.display(),
+        shell_word(&out.join("run.mcap"))
+    );
+    ensure!(
         out.extension().is_some_and(|end| end.eq_ignore_ascii_case("mcap")),
         "`{}` does not end with .mcap: the result of a run is a cache; write `-o {}`, and then `nucleus render` or \
          `nucleus export` makes other files of it",

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::Args;
 use clap::builder::PossibleValue;
-use nucleus_cache::{Playback, atomic_file};
+use nucleus_cache::{Playback, atomic_file, shell_word};
 use nucleus_interop::{Format, Request, Selection, export};
 use nucleus_maya::maya_ascii;
 
@@ -232,6 +232,18 @@ impl Export {
                 other.name(),
                 format.name(),
                 out.with_extension(format.name()).display()
+            );
+        }
+        if let Some(out) =
+            self.out.as_ref().filter(|out| format.is_one_file() && Format::of_path(out).is_none())
+        {
+            let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+            let own = out.with_file_name(format.default_name(&stem));
+            bail!(
+                "`{}` is not the name of a {} file: write `-o {}`",
+                out.display(),
+                format.name(),
+                shell_word(&own)
             );
         }
         let out = match &self.out {

@@ -312,9 +312,13 @@ impl Trade {
             let more = if self.wishes().is_refined() { MORE } else { "" };
             output::report(&format!("{said}{more}wrote {}\n", names.join(", ")));
         }
-        match (&self.apply, choice.point()) {
-            (Some(apply), Some(point)) => self.apply(apply.as_ref(), subject, &point.setting, text)?,
-            (Some(_), None) => say!("without a recommendation `--apply` writes nothing"),
+        match (&self.apply, &choice) {
+            (Some(apply), Choice::Found(point) | Choice::Nearest(point)) => {
+                self.apply(apply.as_ref(), subject, &point.setting, text)?;
+            }
+            (Some(_), Choice::Unresolved(_) | Choice::None) => {
+                say!("without a recommendation `--apply` writes nothing");
+            }
             (None, _) => {}
         }
         let is_requested = self.error.is_some() || self.time.is_some() || !self.bounds.list().is_empty();

@@ -205,6 +205,10 @@ fn an_export_option_without_effect_is_refused() {
             &["fall.mcap", "--as", "usda", "-o", "q.glb"],
             "`q.glb` is the name of a glb file, but `--as` asks for usda: name it `q.usda`",
         ),
+        (
+            &["fall.mcap", "--as", "glb", "-o", "drape.ron", "--force"],
+            "`drape.ron` is not the name of a glb file: write `-o drape.glb`",
+        ),
         (&["drape.ron", "-o", "q.mb"], "write `-o q.ma`"),
         (&["drape.ron", "--frames", "4"], "`--frames` is for caches, and `drape.ron` is a scene"),
     ] {

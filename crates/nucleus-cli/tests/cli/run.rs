@@ -169,6 +169,8 @@ fn a_cache_with_the_name_of_a_picture_is_refused() {
     assert_refused(&output, "`drape.png` does not end with .mcap");
     assert!(stderr(&output).contains("write `-o drape.mcap`"), "{}", stderr(&output));
     assert!(!folder.path().join("drape.png").exists());
+    let output = nucleus(folder.path(), &["run", "drape.ron", "-o", "."]);
+    assert_refused(&output, "`.` is a folder: write `-o ./run.mcap`");
 }
 
 /// Limits the size of files that the command writes, as a full disk does.
