@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use nucleus_cache::{ObjectInfo, ObjectKind, ReadError};
+use nucleus_core::Particle;
 use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -111,6 +112,23 @@ impl Playback {
             Ok::<_, PyErr>(found.iter().flat_map(|x| x.to_ne_bytes()).collect())
         })?;
         Ok(PyBytes::new(py, &strain))
+    }
+
+    /// Number (64-bit), age, lifespan and mass (64-bit floats) of each particle of an object whose particles have their own.
+    fn particles<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        frame: Option<i32>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes: Vec<u8> = self.with(py, |cache| {
+            let (object, sample) = place(cache, name, frame)?;
+            let found = cache.particles(object, sample).map_err(unreadable)?.unwrap_or_default();
+            let numbers = |one: &Particle| [one.age, one.lifespan, one.mass].map(f64::to_ne_bytes);
+            let row = |one: &Particle| [[one.id.to_ne_bytes()].as_slice(), &numbers(one)].concat().concat();
+            Ok::<_, PyErr>(found.iter().flat_map(row).collect())
+        })?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     /// The faces of an object: corners of each face, and points of all corners, as unsigned 32-bit numbers.

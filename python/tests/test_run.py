@@ -41,6 +41,17 @@ def test_a_cache_gives_positions_in_scene_units(folder):
         nucleus.open("none.mcap")
 
 
+def test_a_cache_gives_the_number_and_age_of_particles_that_are_born(folder):
+    nodes = """"n": nucleus(gravity: 0), "p": nParticle(selfCollide: false), "e": pointEmitter(target: "p", rate: 48)"""
+    (folder / "drops.ron").write_text(f"Scene(time: (start: 1, end: 5, fps: 24), nodes: {{{nodes}}})")
+    cache = nucleus.run("drops.ron").open()
+    particles = cache.particles("p")
+    assert len(particles) == len(cache.positions("p")) == 8
+    assert list(particles["id"]) == list(range(8)) and np.all(particles["mass"] > 0)
+    assert np.allclose(particles["age"], np.arange(7, -1, -1) / 48, atol=1 / 48)
+    assert len(cache.particles("p", frame=1)) == 0
+
+
 def test_mistakes_are_exceptions(folder):
     with pytest.raises(nucleus.RunError, match="did you mean `bendResistance`"):
         nucleus.run("drape.ron", set={"cloth1.bendResistence": 2})

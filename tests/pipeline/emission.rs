@@ -1,19 +1,21 @@
 //! Emitters, lifespans and fields, from a scene to its solved particles.
 
-use nucleus_core::{ClothId, ParticleAge};
+use nucleus_cache::Detail;
+use nucleus_core::{ClothId, Particle};
 use nucleus_graph::Simulation;
 use nucleus_graph::scene::Scene;
 use nucleus_tests::gallery::program_of;
+use nucleus_tests::record;
 
 const DROPS: ClothId = ClothId(0);
 
 /// Particles at the end of a run: positions and ages.
-type Found = (Vec<[f32; 3]>, Vec<ParticleAge>);
+type Found = (Vec<[f32; 3]>, Vec<Particle>);
 
 fn found(simulation: &Simulation<f32>) -> Found {
     let (mut places, mut ages) = (Vec::new(), Vec::new());
     simulation.state().positions(DROPS, 1.0, &mut places);
-    simulation.state().ages(DROPS, &mut ages);
+    simulation.state().particles(DROPS, &mut ages);
     (places, ages)
 }
 
@@ -47,6 +49,41 @@ fn an_omni_emitter_emits_at_its_rate_on_spheres_that_grow_with_age() {
     }
     // Births are evenly spaced: a 240th of a second.
     assert!(ages.windows(2).all(|pair| (pair[0].age - pair[1].age - 1.0 / 240.0).abs() < 1e-9));
+}
+
+#[test]
+fn a_cache_has_the_number_and_age_of_each_particle_though_their_order_changes() {
+    let lives = "lifespanMode: randomRange, lifespan: 0.4, lifespanRandom: 0.3";
+    let program = program_of(&nodes(lives, "emitterType: omni, rate: 120, speed: 3"));
+    let recording = record(&program, 24, 1, Detail::Frames);
+    let mut cache = recording.play();
+    let (last, [before, after]) = (cache.time_samples().len() - 1, [1, 0]);
+    let [then, now] = [before, after].map(|back| cache.particles(0, last - back).unwrap().unwrap());
+    let [from, to] = [before, after].map(|back| cache.positions(0, last - back).unwrap());
+    assert_eq!(now.len(), to.len());
+    for (particle, expected) in now.iter().zip(found(&recording.simulation).1) {
+        assert_eq!((particle.id, particle.mass as f32), (expected.id, expected.mass as f32));
+        assert_eq!(
+            [particle.age, particle.lifespan].map(|x| x as f32),
+            [expected.age, expected.lifespan].map(|x| x as f32)
+        );
+    }
+    // A particle is found again by its number: it flies at 3 m/s.
+    let place = |id| then.iter().position(|one| one.id == id);
+    let flights = now.iter().zip(&to).filter_map(|(one, to)| Some((to, &from[place(one.id)?])));
+    let distances: Vec<f32> = flights
+        .map(|(to, from)| (0..3).map(|axis| (to[axis] - from[axis]).powi(2)).sum::<f32>().sqrt())
+        .collect();
+    assert!(distances.len() > 30 && now.iter().enumerate().any(|(at, one)| place(one.id) != Some(at)));
+    assert!(distances.iter().all(|distance| (distance - 0.125).abs() < 1e-4), "{distances:?}");
+}
+
+#[test]
+fn a_particle_that_is_due_at_the_end_of_a_frame_is_born_in_it() {
+    for rate in [1, 7, 100, 1000] {
+        let emitter = format!("emitterType: omni, rate: {rate}");
+        assert_eq!(run("", &emitter, 24, 1).0.len(), rate, "a rate of {rate}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What the scenes of particles and liquids show, measured.
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, ParticleAge, ParticleLook};
+use nucleus_core::{ClothId, Particle, ParticleLook};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 use nucleus_tests::gallery::{changed, program_of};
@@ -13,7 +13,7 @@ const FIRST: ClothId = ClothId(0);
 /// Particles at the end of a frame, in scene units.
 struct Particles {
     places: Vec<Vec3>,
-    ages: Vec<ParticleAge>,
+    ages: Vec<Particle>,
     looks: Vec<ParticleLook>,
 }
 
@@ -24,7 +24,7 @@ impl Particles {
         (0..frames).for_each(|_| _ = run.advance(&mut ()));
         let (mut places, mut ages, mut looks) = (Vec::new(), Vec::new(), Vec::new());
         run.state().positions(FIRST, run.units_per_metre(), &mut places);
-        run.state().ages(FIRST, &mut ages);
+        run.state().particles(FIRST, &mut ages);
         run.state().looks(FIRST, &mut looks);
         Self { places: places.iter().map(|&place| Vec3::from(place.map(f64::from))).collect(), ages, looks }
     }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, ParticleAge};
+use nucleus_core::{ClothId, Particle};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::scene::read_scene_text;
@@ -105,11 +105,11 @@ fn particles_are_born_as_recorded_and_move_as_recorded() {
         "a": nParticle(cacheFile: "a.####.obj", playFromCache: true, lifespanMode: constant, lifespan: 0.1)"#;
     let program = compiled(&folder, nodes).unwrap();
     let mut run = Simulation::<f64>::new(&program, 1);
-    let mut ages: Vec<ParticleAge> = Vec::new();
+    let mut ages: Vec<Particle> = Vec::new();
     for frame in 2..=24 {
         let report = run.advance(&mut ()).report;
         assert_eq!((report.births_refused, report.deaths), (0, 0));
-        run.state().ages(ClothId(0), &mut ages);
+        run.state().particles(ClothId(0), &mut ages);
         let recorded = at(frame);
         assert_eq!(ages.len(), recorded.len(), "frame {frame}");
         for (ours, recorded) in points(&run, 0, recorded.len()).iter().zip(&recorded) {

@@ -34,6 +34,7 @@ pub fn record(program: &Program, frames: i32, threads: usize, detail: Detail) ->
         frames_per_second: program.time().fps,
         units_per_metre: program.units_per_metre(),
         detail,
+        particles: program.has_individual_particles(),
         ..RunInfo::default()
     };
     let mut cache = Vec::new();

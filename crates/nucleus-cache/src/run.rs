@@ -80,6 +80,8 @@ pub struct RunInfo {
     pub looks: bool,
     /// Whether contact turns particles, whose orientations are then recorded.
     pub rotation: bool,
+    /// Whether particles have numbers, ages, lifespans and masses of their own, which are then recorded.
+    pub particles: bool,
     /// The ground plane, if the scene uses one.
     pub ground: Option<Plane>,
     /// The ground plane at each frame from the start frame on; empty if it does not move.
@@ -135,6 +137,7 @@ impl Default for RunInfo {
             strain: false,
             looks: false,
             rotation: false,
+            particles: false,
             ground: None,
             ground_motion: Vec::new(),
             radii: BTreeMap::new(),

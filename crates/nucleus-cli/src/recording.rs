@@ -117,6 +117,7 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
         surfaces: simulation.objects().iter().filter_map(surface).collect(),
         looks: program.has_looks(),
         rotation: program.has_rotation(),
+        particles: program.has_individual_particles(),
         cameras: program.cameras().into_iter().map(camera).collect(),
         ..RunInfo::default()
     })

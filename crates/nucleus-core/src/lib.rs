@@ -117,8 +117,7 @@ pub use model::objects::{Cloth, ClothLists, Collider, LinkOrder, Mass, Particles
 pub use model::surface::{Faces, Surface};
 pub use model::vertex_maps::VertexMaps;
 pub use output::{
-    ContactState, ParticleAge, ParticleLook, PassCost, Stage, StateView, StepObserver, StepReport,
-    SubstepIndex,
+    ContactState, Particle, ParticleLook, PassCost, Stage, StateView, StepObserver, StepReport, SubstepIndex,
 };
 pub use schedule::resistance::{
     BENDING_PER_RESISTANCE, PhysicalStiffness, STIFFNESS_PER_RESISTANCE, classic_stiffness,

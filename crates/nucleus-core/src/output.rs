@@ -43,13 +43,15 @@ pub enum ContactState {
 
 /// A particle of an object in which particles are born and die.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ParticleAge {
+pub struct Particle {
     /// Its number, counted from 0 over all particles that the object ever had.
     pub id: u64,
     /// Time since its birth in seconds.
     pub age: f64,
     /// Age at which it dies in seconds; infinite for never.
     pub lifespan: f64,
+    /// In kilograms, without the ramp.
+    pub mass: f64,
 }
 
 /// The looks of a particle.
@@ -87,7 +89,7 @@ pub trait StateView {
     }
     /// Replaces `out` by the particles of an object in the order of their positions; none where particles are not born
     /// and do not die.
-    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+    fn particles(&self, cloth: ClothId, out: &mut Vec<Particle>) {
         let _ = cloth;
         out.clear();
     }

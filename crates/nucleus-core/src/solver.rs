@@ -19,7 +19,7 @@ use crate::model::builder::ModelBuilder;
 use crate::model::cloth_lists::compile_cloth;
 use crate::model::vertex_maps::VertexMaps;
 use crate::model::{ClothModel, ColliderModel, Model};
-use crate::output::{ContactState, ParticleAge, ParticleLook, StateView, StepObserver};
+use crate::output::{ContactState, Particle, ParticleLook, StateView, StepObserver};
 use crate::output::{PassCost, StepReport};
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::looks::looks;
@@ -276,9 +276,9 @@ impl<R: CompiledReal> StateView for Solver<R> {
         R::contact_states(self, out);
     }
 
-    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+    fn particles(&self, cloth: ClothId, out: &mut Vec<Particle>) {
         out.clear();
-        out.extend(self.state.population_of(cloth.index()).into_iter().flat_map(Population::ages));
+        out.extend(self.state.population_of(cloth.index()).into_iter().flat_map(Population::particles));
     }
 
     fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {

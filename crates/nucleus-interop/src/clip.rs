@@ -5,7 +5,7 @@ use std::io::{Read, Seek};
 use nucleus_cache::{
     Camera, CameraView, LiquidSurface, ObjectInfo, ObjectKind, Playback, TextureCoordinates,
 };
-use nucleus_core::ParticleLook;
+use nucleus_core::{Particle, ParticleLook};
 
 use crate::error::ExportError;
 
@@ -171,6 +171,14 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     /// When the frame is damaged.
     pub fn looks(&mut self, object: usize, sample: usize) -> Result<Option<Vec<ParticleLook>>, ExportError> {
         Ok(self.cache.looks(self.objects[object], self.samples[sample].moment)?)
+    }
+
+    /// The particles of an object at a sample; `None` where they have no numbers of their own, or none lives.
+    ///
+    /// # Errors
+    /// When the frame is damaged.
+    pub fn particles(&mut self, object: usize, sample: usize) -> Result<Option<Vec<Particle>>, ExportError> {
+        Ok(self.cache.particles(self.objects[object], self.samples[sample].moment)?)
     }
 
     /// The texture coordinates of an object; they fit its first mesh.

@@ -7,6 +7,7 @@ use std::io::{Read, Seek};
 use std::path::Path;
 
 use nucleus_cache::ObjectKind;
+use nucleus_core::Particle;
 
 use crate::clip::{Clip, Sample};
 use crate::error::ExportError;
@@ -55,21 +56,24 @@ pub(crate) fn write<R: Read + Seek>(
             clip.require_constant_topology(object, "nCache")?;
         }
     }
+    let mut channels = Vec::with_capacity(names.len());
+    for (object, name) in names.iter().enumerate() {
+        channels.push(channels_of(clip, object, name)?);
+    }
     for index in 0..clip.samples().len() {
         let sample = clip.samples()[index];
         let tick = ticks(sample.frame_time, per_frame);
         for (object, name) in names.iter().enumerate() {
             let file = format!("{name}{}.{}", numbered(&sample, tick, per_frame), width.end());
             let mut file = output.file(folder.join(file))?;
-            write_sample(clip, object, index, name, Frame { tick, width }, &mut file)?;
+            write_sample(clip, object, index, &channels[object], Frame { tick, width }, &mut file)?;
             output.finish(file)?;
         }
         progress((index + 1) as f64 / clip.samples().len() as f64);
     }
-    for (object, name) in names.iter().enumerate() {
+    for (name, channels) in names.iter().zip(&channels) {
         let mut file = output.file(folder.join(format!("{name}.xml")))?;
-        let channels = channels(clip, object, name)?;
-        file.text(description(clip, &channels, width, per_frame));
+        file.text(description(clip, channels, width, per_frame));
         output.finish(file)?;
     }
     Ok(())
@@ -101,8 +105,34 @@ type Channel = (String, &'static str, &'static str);
 const VECTORS: &str = "FloatVectorArray";
 const NUMBERS: &str = "DoubleArray";
 
-/// The channels of an object: positions for a mesh; ids, count, positions and velocities for particles.
-fn channels<R: Read + Seek>(
+/// The largest number of single precision, which Maya writes for the lifespan of a particle that lives forever.
+const FOREVER: f64 = f32::MAX as f64;
+
+/// A fact about a particle, of its state and the time in seconds.
+type Fact = fn(&Particle, f64) -> f64;
+
+/// The channels of particles that are born or die.
+const FACTS: [(&str, Fact); 5] = [
+    ("mass", |particle, _| particle.mass),
+    ("birthTime", |particle, now| now - particle.age),
+    ("age", |particle, _| particle.age),
+    ("finalLifespanPP", |particle, _| particle.lifespan.min(FOREVER)),
+    ("lifespanPP", |particle, _| particle.lifespan.min(FOREVER)),
+];
+
+/// Whether the particles of an object have numbers of their own at any sample.
+fn has_individual_particles<R: Read + Seek>(clip: &mut Clip<R>, object: usize) -> Result<bool, ExportError> {
+    for sample in 0..clip.samples().len() {
+        if clip.particles(object, sample)?.is_some() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The channels of an object: positions for a mesh; for particles ids, count, positions, velocities where they are recorded,
+/// and what differs by particle.
+fn channels_of<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     name: &str,
@@ -113,6 +143,9 @@ fn channels<R: Read + Seek>(
     let mut kinds = vec![("id", NUMBERS), ("count", NUMBERS), ("position", VECTORS)];
     if clip.velocities(object, clip.samples().len() - 1)?.is_some() {
         kinds.push(("velocity", VECTORS));
+    }
+    if has_individual_particles(clip, object)? {
+        kinds.extend(FACTS.map(|(kind, _)| (kind, NUMBERS)));
     }
     Ok(kinds.into_iter().map(|(kind, holds)| (format!("{name}_{kind}"), holds, kind)).collect())
 }
@@ -156,23 +189,30 @@ fn write_sample<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     sample: usize,
-    name: &str,
+    channels: &[Channel],
     frame: Frame,
     file: &mut OutFile,
 ) -> Result<(), ExportError> {
     let positions = clip.positions(object, sample)?;
     let count = positions.len();
+    let particles = clip.particles(object, sample)?;
+    let now = clip.samples()[sample].frame_time / clip.fps();
     let mut body = Vec::new();
-    for (name, _, kind) in channels(clip, object, name)? {
-        let data = match kind {
-            "id" => (0..count).flat_map(|id| (id as f64).to_be_bytes()).collect(),
-            "count" => (count as f64).to_be_bytes().to_vec(),
+    for (name, holds, kind) in channels {
+        let data = match *kind {
+            "id" => match &particles {
+                Some(particles) => numbers(particles.iter().map(|particle| particle.id as f64)),
+                None => numbers((0..count).map(|id| id as f64)),
+            },
+            "count" => numbers([count as f64]),
             "velocity" => vectors(&clip.velocities(object, sample)?.unwrap_or_else(|| vec![[0.0; 3]; count])),
-            _ => vectors(&positions),
+            _ => match FACTS.iter().find(|(fact, _)| fact == kind) {
+                Some((_, fact)) => numbers(particles.iter().flatten().map(|particle| fact(particle, now))),
+                None => vectors(&positions),
+            },
         };
-        let (tag, size) = match kind {
-            "id" => (b"DBLA", count),
-            "count" => (b"DBLA", 1),
+        let (tag, size) = match *holds {
+            NUMBERS => (b"DBLA", data.len() / size_of::<f64>()),
             _ => (b"FVCA", count),
         };
         frame.width.block(b"CHNM", &[name.as_bytes(), b"\0"].concat(), &mut body);
@@ -182,6 +222,10 @@ fn write_sample<R: Read + Seek>(
     file.bytes(&frame.width.head(frame.tick));
     file.bytes(&frame.width.group(b"MYCH", &body));
     Ok(())
+}
+
+fn numbers(values: impl IntoIterator<Item = f64>) -> Vec<u8> {
+    values.into_iter().flat_map(f64::to_be_bytes).collect()
 }
 
 fn vectors(values: &[[f32; 3]]) -> Vec<u8> {

@@ -4,6 +4,7 @@ use std::io::{Read, Seek};
 use std::path::Path;
 
 use nucleus_cache::ObjectInfo;
+use nucleus_core::Particle;
 
 use crate::clip::Clip;
 use crate::error::ExportError;
@@ -24,7 +25,9 @@ pub(crate) fn write<R: Read + Seek>(
             let positions = clip.positions(object, sample)?;
             let velocities = clip.velocities(object, sample)?;
             let mut file = output.file(folder.join(format!("{name}.{frame}.vtu")))?;
-            write_grid(&mut file, clip.object_at(object, sample)?, &positions, velocities.as_deref());
+            let particles = clip.particles(object, sample)?;
+            let data = point_data(velocities.as_deref(), particles.as_deref());
+            write_grid(&mut file, clip.object_at(object, sample)?, &positions, data);
             output.finish(file)?;
         }
         progress((sample + 1) as f64 / clip.samples().len() as f64);
@@ -48,17 +51,52 @@ const TRIANGLE: u8 = 5;
 const POLYGON: u8 = 7;
 const QUAD: u8 = 9;
 
-fn write_grid(
-    file: &mut OutFile,
-    object: &ObjectInfo,
-    positions: &[[f32; 3]],
-    velocities: Option<&[[f32; 3]]>,
-) {
-    let floats = |values: &[[f32; 3]]| values.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+/// An array of values per point.
+struct PointArray {
+    name: &'static str,
+    kind: &'static str,
+    components: usize,
+    bytes: Vec<u8>,
+}
+
+/// The values of points: velocities, and numbers, ages, lifespans and masses of particles that have their own.
+fn point_data(velocities: Option<&[[f32; 3]]>, particles: Option<&[Particle]>) -> Vec<PointArray> {
+    let mut data = Vec::new();
+    data.extend(velocities.map(|all| PointArray {
+        name: "velocity",
+        kind: "Float32",
+        components: 3,
+        bytes: floats(all.as_flattened().iter().copied()),
+    }));
+    let Some(particles) = particles else { return data };
+    let ids = particles.iter().flat_map(|particle| (particle.id as i64).to_le_bytes()).collect();
+    data.push(PointArray { name: "id", kind: "Int64", components: 1, bytes: ids });
+    let facts: [(&str, fn(&Particle) -> f64); 3] = [
+        ("age", |particle| particle.age),
+        ("lifespan", |particle| particle.lifespan),
+        ("mass", |particle| particle.mass),
+    ];
+    data.extend(facts.map(|(name, fact)| PointArray {
+        name,
+        kind: "Float32",
+        components: 1,
+        bytes: floats(particles.iter().map(|particle| fact(particle) as f32)),
+    }));
+    data
+}
+
+fn floats(values: impl Iterator<Item = f32>) -> Vec<u8> {
+    values.flat_map(f32::to_le_bytes).collect()
+}
+
+fn write_grid(file: &mut OutFile, object: &ObjectInfo, positions: &[[f32; 3]], data: Vec<PointArray>) {
     let (corners, ends, kinds) = cells(object, positions.len());
     let numbers = |values: &[i64]| values.iter().flat_map(|x| x.to_le_bytes()).collect();
-    let mut blocks: Vec<Vec<u8>> = vec![floats(positions), numbers(&corners), numbers(&ends), kinds];
-    blocks.extend(velocities.map(floats));
+    let mut blocks: Vec<Vec<u8>> =
+        vec![floats(positions.as_flattened().iter().copied()), numbers(&corners), numbers(&ends), kinds];
+    let own = blocks.len();
+    let heads: Vec<_> = data.iter().map(|array| (array.name, array.kind, array.components)).collect();
+    blocks.extend(data.into_iter().map(|array| array.bytes));
     let mut offset = 0;
     let offsets: Vec<usize> = blocks
         .iter()
@@ -74,10 +112,13 @@ fn write_grid(
             offsets[block]
         )
     };
-    let point_data = match velocities {
-        Some(_) => {
-            format!("<PointData Vectors=\"velocity\">{}</PointData>\n", array("velocity", "Float32", 3, 4))
-        }
+    let arrays: String = (own..)
+        .zip(&heads)
+        .map(|(block, &(name, kind, components))| array(name, kind, components, block))
+        .collect();
+    let point_data = match heads.first() {
+        Some(("velocity", ..)) => format!("<PointData Vectors=\"velocity\">{arrays}</PointData>\n"),
+        Some(_) => format!("<PointData>{arrays}</PointData>\n"),
         None => String::new(),
     };
     file.text(format!(

@@ -204,6 +204,44 @@ fn an_ncache_has_a_file_for_each_frame_and_names_its_channels() {
 }
 
 #[test]
+fn an_ncache_and_a_grid_have_the_numbers_and_ages_of_particles_that_are_born_or_die() {
+    let write = |path: &Path| sample::record(path, Variant { lives: true, ..Variant::default() });
+    let lives = sample::lives((END - START) as f32);
+    let has = |bytes: &[u8], part: &[u8], what: &str| {
+        assert!(bytes.windows(part.len()).any(|window| window == part), "{what}");
+    };
+    let (_folder, out, exported) = try_export(write, Format::Mc, Selection::default());
+    exported.unwrap();
+    let text = fs::read_to_string(out.join("dust.xml")).unwrap();
+    let bytes = fs::read(out.join(format!("dustFrame{END}.mc"))).unwrap();
+    // Maya writes the largest float for a particle that lives forever; its clock is the frame over the rate.
+    let now = f64::from(END) / 24.0;
+    let facts: [(&str, [f64; 5]); 5] = [
+        ("id", std::array::from_fn(|k| lives[k].id as f64)),
+        ("age", std::array::from_fn(|k| lives[k].age)),
+        ("birthTime", std::array::from_fn(|k| now - lives[k].age)),
+        ("lifespanPP", std::array::from_fn(|k| lives[k].lifespan.min(f64::from(f32::MAX)))),
+        ("mass", std::array::from_fn(|k| lives[k].mass)),
+    ];
+    for (channel, values) in facts {
+        assert!(
+            text.contains(&format!("ChannelName=\"dust_{channel}\" ChannelType=\"DoubleArray\"")),
+            "{text}"
+        );
+        let raw: Vec<u8> = values.iter().flat_map(|x| x.to_be_bytes()).collect();
+        has(&bytes, &[&b"DBLA\0\0\0\x28"[..], &raw].concat(), channel);
+    }
+    let (_folder, out, exported) = try_export(write, Format::Vtu, Selection::default());
+    exported.unwrap();
+    let bytes = fs::read(out.join(format!("dust.{END:04}.vtu"))).unwrap();
+    has(&bytes, b"<DataArray type=\"Int64\" Name=\"id\" NumberOfComponents=\"1\"", "its array");
+    let ids: Vec<u8> = lives.iter().flat_map(|one| one.id.to_le_bytes()).collect();
+    has(&bytes, &[&40_u64.to_le_bytes()[..], &ids].concat(), "numbers");
+    let ages: Vec<u8> = lives.iter().flat_map(|one| (one.age as f32).to_le_bytes()).collect();
+    has(&bytes, &[&20_u64.to_le_bytes()[..], &ages].concat(), "ages");
+}
+
+#[test]
 fn an_ncache_has_whole_ticks_per_frame_whatever_the_rate() {
     for (fps, per_frame) in [(23.976, 250), (29.97, 200), (59.94, 100)] {
         let write = |path: &Path| sample::record(path, Variant { fps, ..Variant::default() });

@@ -65,6 +65,23 @@ fn particles_have_the_recorded_radius_colour_and_opacity_of_each_sample() {
 }
 
 #[test]
+fn particles_that_are_born_or_die_have_their_numbers_ages_lifespans_and_masses_at_each_sample() {
+    let text = usda(Variant { lives: true, ..Variant::default() });
+    let dust = prim(&text, "def Points \"dust\"");
+    for frame in [START, END] {
+        let first = (1_u64 << 33) + (frame - START) as u64;
+        let ids: Vec<String> = (first..first + 5).map(|id| id.to_string()).collect();
+        assert_eq!(sampled(dust, "int64[] ids", frame), format!("[{}]", ids.join(", ")));
+        assert_eq!(sampled(dust, "float[] primvars:age", frame), "[4, 3, 2, 1, 0]");
+        assert_eq!(sampled(dust, "float[] primvars:lifespan", frame), "[inf, 5, 5, 5, 5]");
+        assert_eq!(sampled(dust, "float[] primvars:mass", frame), "[0.5, 1.5, 2.5, 3.5, 4.5]");
+    }
+    let without = usda(Variant::default());
+    assert!(prim(&without, "def Points \"dust\"").contains("int64[] ids = [0, 1, 2, 3, 4]"), "their places");
+    assert!(!without.contains("primvars:age"));
+}
+
+#[test]
 fn binary_usd_has_the_looks_of_particles_too() {
     let folder = tempfile::tempdir().unwrap();
     let out = exported(folder.path(), Variant { looks: true, ..Variant::default() }, Format::Usdc);

@@ -93,6 +93,12 @@ class Cache:
         """Strain at each point, where it is recorded (``run(..., record="strain")``)."""
         return np.frombuffer(self._cache.strain(name, frame), dtype=np.float32)
 
+    def particles(self, name: str, frame: Optional[int] = None) -> NDArray[np.void]:
+        """``id``, ``age`` and ``lifespan`` in seconds and ``mass`` in kilograms of each particle, in the order of the positions;
+        none where no particle is born or dies, so that their order does not change."""
+        fields = [("id", np.uint64), ("age", np.float64), ("lifespan", np.float64), ("mass", np.float64)]
+        return np.frombuffer(self._cache.particles(name, frame), dtype=fields)
+
     def faces(self, name: str) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
         """The faces of an object: the number of corners of each face, and the points of all corners."""
         return faces_of(self._cache.faces(name))

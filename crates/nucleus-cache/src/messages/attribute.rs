@@ -1,7 +1,7 @@
-//! Bytes of per-point attributes: the messages on `/<object>/contacts` and `/<object>/strain`, little-endian; and the
-//! computation of strain.
+//! Bytes of per-point attributes: the messages on `/<object>/contacts`, `/<object>/strain` and others,
+//! little-endian; and the computation of strain.
 
-use nucleus_core::{ContactState, ParticleLook};
+use nucleus_core::{ContactState, Particle, ParticleLook};
 
 use crate::messages::byte_shuffle::{shuffle, unshuffle};
 use crate::messages::points::{HEAD, Stamp};
@@ -63,8 +63,20 @@ of a unit quaternion, the turn of the particle since its birth.
     width: 16,
 };
 
+pub(crate) const PARTICLES: Attribute = Attribute {
+    topic: "particles",
+    encoding: "nucleus.particles.v1",
+    schema: "\
+Little-endian. i32 frame, u32 substep, u32 substeps, u32 count, u64 zero, f64 time: as in nucleus.points.v1. Then five words of
+four bytes for each particle, as four planes of 5 count bytes: plane k holds byte k of every word (0 is the lowest). They are
+the lower and the upper half of its number (u64), which no other particle of the object ever has, and as f32 its age in
+seconds, the age at which it dies (infinite for never) and its mass in kilograms.
+",
+    width: 20,
+};
+
 /// All attributes.
-pub(crate) const ALL: [&Attribute; 4] = [&CONTACTS, &STRAIN, &LOOKS, &ROTATION];
+pub(crate) const ALL: [&Attribute; 5] = [&CONTACTS, &STRAIN, &LOOKS, &ROTATION, &PARTICLES];
 
 impl Attribute {
     /// Whether a run records it.
@@ -73,6 +85,7 @@ impl Attribute {
             || (self.encoding == STRAIN.encoding && run.strain)
             || (self.encoding == LOOKS.encoding && run.looks)
             || (self.encoding == ROTATION.encoding && run.rotation)
+            || (self.encoding == PARTICLES.encoding && run.particles)
     }
 
     /// The bytes of the values in a message; `None` when its time stamp or its number of points differs. Without a
@@ -137,6 +150,29 @@ pub(crate) fn read_looks(bytes: &[u8]) -> Vec<ParticleLook> {
         incandescence: [a, b, c],
     };
     numbers.as_chunks::<8>().0.iter().map(look).collect()
+}
+
+/// Appends numbers, ages, lifespans and masses of particles.
+pub(crate) fn write_particles(particles: &[Particle], out: &mut Vec<u8>) {
+    let words = |particle: &Particle| {
+        let id = [particle.id as u32, (particle.id >> 32) as u32].map(f32::from_bits);
+        [id[0], id[1], particle.age as f32, particle.lifespan as f32, particle.mass as f32]
+    };
+    let words: Vec<f32> = particles.iter().flat_map(words).collect();
+    shuffle(&words, out);
+}
+
+/// Numbers, ages, lifespans and masses of particles from their bytes.
+pub(crate) fn read_particles(bytes: &[u8]) -> Vec<Particle> {
+    let mut words = vec![0.0f32; bytes.len() / 4];
+    unshuffle(bytes, &mut words);
+    let particle = |&[low, high, age, lifespan, mass]: &[f32; 5]| Particle {
+        id: u64::from(low.to_bits()) | u64::from(high.to_bits()) << 32,
+        age: age.into(),
+        lifespan: lifespan.into(),
+        mass: mass.into(),
+    };
+    words.as_chunks::<5>().0.iter().map(particle).collect()
 }
 
 /// The edges of a mesh, each once, with their rest lengths.

@@ -7,7 +7,7 @@ use mcap::records::Metadata;
 
 use crate::camera;
 use crate::error::OpenError;
-use crate::messages::attribute::{CONTACTS, LOOKS, ROTATION, STRAIN};
+use crate::messages::attribute::{CONTACTS, LOOKS, PARTICLES, ROTATION, STRAIN};
 use crate::run::{Detail, Packing, Plane, RunInfo, SurfaceShape};
 use crate::{selections, texture_coordinates};
 
@@ -37,7 +37,7 @@ const SMALL: &str = "small";
 /// Key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
 /// Keys that the format defines, whether or not a run has them.
-const RESERVED: [&str; 18] = [
+const RESERVED: [&str; 19] = [
     "format",
     "start",
     "end",
@@ -50,6 +50,7 @@ const RESERVED: [&str; 18] = [
     STRAIN.topic,
     LOOKS.topic,
     ROTATION.topic,
+    PARTICLES.topic,
     COUNT_OF_CAMERAS,
     GROUND,
     GROUND_MOTION,
@@ -95,6 +96,9 @@ impl RunInfo {
         }
         if self.rotation {
             run.insert(ROTATION.topic.to_owned(), true.to_string());
+        }
+        if self.particles {
+            run.insert(PARTICLES.topic.to_owned(), true.to_string());
         }
         if !self.cameras.is_empty() {
             run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
@@ -176,6 +180,7 @@ impl RunInfo {
             strain: run.flag(STRAIN.topic),
             looks: run.flag(LOOKS.topic),
             rotation: run.flag(ROTATION.topic),
+            particles: run.flag(PARTICLES.topic),
             ground: run.ground()?,
             ground_motion: run.ground_motion()?,
             radii: run.radii()?,
@@ -357,6 +362,7 @@ mod tests {
         let complete = RunInfo {
             looks: true,
             rotation: true,
+            particles: true,
             ground: Some(Plane { origin: [0.0; 3], normal: [0.0, 1.0, 0.0] }),
             ground_motion: vec![Plane { origin: [0.0; 3], normal: [0.0, 1.0, 0.0] }],
             radii: BTreeMap::from([("beads".to_owned(), 0.1)]),

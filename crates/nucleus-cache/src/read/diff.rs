@@ -53,7 +53,8 @@ pub enum Difference {
     Values {
         /// The object.
         name: String,
-        /// The values: `velocities`, `contacts`, `strain`, `looks` (radius, opacity, colours) or `rotation`.
+        /// The values: `velocities`, `contacts`, `strain`, `looks` (radius, opacity, colours), `rotation` or
+        /// `particles` (number, age, lifespan, mass).
         values: &'static str,
         /// The frame.
         frame: i32,

@@ -63,12 +63,14 @@ impl<R: Read + Seek> Playback<R> {
         };
         let (contacts, strain) = (has(&attribute::CONTACTS), has(&attribute::STRAIN));
         let (looks, rotation) = (has(&attribute::LOOKS), has(&attribute::ROTATION));
+        let particles = has(&attribute::PARTICLES);
         let known = RunInfo {
             velocities,
             contacts,
             strain,
             looks,
             rotation,
+            particles,
             version: String::new(),
             ..RunInfo::default()
         };
@@ -117,6 +119,7 @@ impl<R: Read + Seek> Playback<R> {
                 strain,
                 looks,
                 rotation,
+                particles,
                 ..
             } = found;
             let run = RunInfo {
@@ -129,6 +132,7 @@ impl<R: Read + Seek> Playback<R> {
                 strain,
                 looks,
                 rotation,
+                particles,
                 checkpoint: 0,
                 ..run.clone()
             };

@@ -2,7 +2,7 @@
 
 use std::io::{Read, Seek};
 
-use nucleus_core::{ContactState, ParticleLook};
+use nucleus_core::{ContactState, Particle, ParticleLook};
 use serde_json::Value;
 
 use crate::error::ReadError;
@@ -87,6 +87,15 @@ impl<R: Read + Seek> Playback<R> {
         let mut orientations = vec![[0.0; 4]; planes.len() / 16];
         unshuffle(planes, orientations.as_flattened_mut());
         Ok(Some(orientations))
+    }
+
+    /// The particles of an object at a time sample; `None` where they have no numbers of their own, because none is born
+    /// or dies.
+    ///
+    /// # Errors
+    /// As [`positions`](Self::positions).
+    pub fn particles(&mut self, object: usize, sample: usize) -> Result<Option<Vec<Particle>>, ReadError> {
+        Ok(self.attribute(object, sample, &attribute::PARTICLES)?.map(attribute::read_particles))
     }
 
     /// The bytes of an attribute of an object at a time sample.

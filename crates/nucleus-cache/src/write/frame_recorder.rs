@@ -6,7 +6,7 @@ use std::io::{Seek, Write};
 use nucleus_core::{ClothId, ContactState, Faces, StateView, StepObserver, SubstepIndex};
 
 use crate::error::RecordError;
-use crate::messages::attribute::{RestEdges, write_contacts, write_looks};
+use crate::messages::attribute::{RestEdges, write_contacts, write_looks, write_particles};
 use crate::messages::byte_shuffle::shuffle;
 use crate::messages::points::{self, Stamp};
 use crate::messages::topology;
@@ -136,6 +136,7 @@ impl<W: Write + Seek> Recorder<W> {
                 self.record_attributes(k, id, points, &stamp)?;
                 self.record_looks(k, id, &stamp, state)?;
                 self.record_orientations(k, id, &stamp, state)?;
+                self.record_particles(k, id, &stamp, state)?;
             }
         }
         self.time_samples += 1;
@@ -218,6 +219,23 @@ impl<W: Write + Seek> Recorder<W> {
         }
         let values = orientations.as_flattened();
         self.send_per_point(channel, stamp, orientations.len(), |message| shuffle(values, message))
+    }
+
+    /// Writes the numbers, ages, lifespans and masses of particles.
+    fn record_particles(
+        &mut self,
+        track: usize,
+        cloth: ClothId,
+        stamp: &Stamp,
+        state: &dyn StateView,
+    ) -> Result<(), RecordError> {
+        let Some(channel) = self.tracks[track].particles else { return Ok(()) };
+        let mut particles = Vec::new();
+        state.particles(cloth, &mut particles);
+        if particles.is_empty() {
+            return Ok(());
+        }
+        self.send_per_point(channel, stamp, particles.len(), |message| write_particles(&particles, message))
     }
 
     /// Sends a message of values per point, which `write` appends to its head.

@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::container::part_file::{self, PartFile, PartPaths};
 use crate::container::writer::{CacheWriter, Schemas};
 use crate::error::RecordError;
-use crate::messages::attribute::{CONTACTS, LOOKS, ROTATION, RestEdges, STRAIN};
+use crate::messages::attribute::{CONTACTS, LOOKS, PARTICLES, ROTATION, RestEdges, STRAIN};
 use crate::messages::points::{self, Stamp};
 use crate::messages::{checkpoint, topology};
 use crate::run::{ObjectInfo, ObjectKind, RunInfo, Source};
@@ -83,6 +83,8 @@ pub(crate) struct Track {
     pub looks: Option<u16>,
     /// Channel of the orientations of particles, if recorded.
     pub rotation: Option<u16>,
+    /// Channel of the numbers and ages of particles, if recorded.
+    pub particles: Option<u16>,
     /// Whether it has moved since it was last recorded.
     pub has_moved: bool,
 }
@@ -307,6 +309,10 @@ impl<W: Write + Seek> Recorder<W> {
                 true => Some(self.channel(&schemas, &name, ROTATION.topic, ROTATION.encoding)?),
                 false => None,
             };
+            let particles = match is_cloth && self.run.particles && object.kind == ObjectKind::Particles {
+                true => Some(self.channel(&schemas, &name, PARTICLES.topic, PARTICLES.encoding)?),
+                false => None,
+            };
             self.tracks.push(Track {
                 name,
                 source: *source,
@@ -319,6 +325,7 @@ impl<W: Write + Seek> Recorder<W> {
                 strain,
                 looks,
                 rotation,
+                particles,
                 has_moved: false,
             });
         }

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::container::part_file::{self, PartFile, PartPaths};
 use crate::error::{OpenError, ReadError, RecordError};
-use crate::messages::attribute::{CONTACTS, LOOKS, ROTATION, STRAIN};
+use crate::messages::attribute::{CONTACTS, LOOKS, PARTICLES, ROTATION, STRAIN};
 use crate::messages::{checkpoint, topology};
 use crate::read::playback::{Playback, file_at};
 use crate::run::{ObjectInfo, RunInfo, Source};
@@ -160,6 +160,7 @@ impl<W: Write + Seek> Recorder<W> {
                     _ if attribute == CONTACTS.topic => track.contacts,
                     _ if attribute == LOOKS.topic => track.looks,
                     _ if attribute == ROTATION.topic => track.rotation,
+                    _ if attribute == PARTICLES.topic => track.particles,
                     _ if attribute == STRAIN.topic => track.strain.as_ref().map(|(channel, _)| *channel),
                     _ => None,
                 }

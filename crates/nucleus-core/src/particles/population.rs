@@ -6,7 +6,7 @@ use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::input::frame::Birth;
 use crate::input::particles::{CollisionEvent, ParticleFacts, ParticleRamp, RampInput, RampTarget};
 use crate::model::objects::{Cloth, Mass, point_masses};
-use crate::output::ParticleAge;
+use crate::output::Particle;
 
 /// The rotation of a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -339,10 +339,10 @@ impl Population {
         }
     }
 
-    /// Number, age and lifespan of each particle.
-    pub fn ages(&self) -> impl Iterator<Item = ParticleAge> + '_ {
-        let columns = self.id.iter().zip(&self.born).zip(&self.lifespan);
-        columns.map(|((&id, born), &lifespan)| ParticleAge { id, age: self.now - born, lifespan })
+    /// What an observer sees of each particle.
+    pub fn particles(&self) -> impl Iterator<Item = Particle> + '_ {
+        let columns = self.id.iter().zip(&self.born).zip(self.lifespan.iter().zip(&self.mass));
+        columns.map(|((&id, born), (&lifespan, &mass))| Particle { id, age: self.now - born, lifespan, mass })
     }
 
     /// Begins a frame: none of its births has been considered.

@@ -104,7 +104,7 @@ fn dropped(event: CollisionEvent) -> [u64; 2] {
         assert!(report.finite);
     }
     let mut ages = Vec::new();
-    solver.ages(BEADS, &mut ages);
+    solver.particles(BEADS, &mut ages);
     assert!(ages.len() <= 64);
     sums
 }

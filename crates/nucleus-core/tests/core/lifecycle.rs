@@ -3,7 +3,7 @@
 use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 use nucleus_core::{
     Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements,
-    FrameInput, Mass, ModelBuilder, ParticleAge, Particles, Pin, PointId, ResistanceModel, RestoreError,
+    FrameInput, Mass, ModelBuilder, Particle, Particles, Pin, PointId, ResistanceModel, RestoreError,
     SelfCollision, Solver, StateView, Surface,
 };
 
@@ -44,9 +44,9 @@ fn places(solver: &Solver<f32>) -> Vec<Vec3> {
     out.into_iter().map(|p| Vec3::from(p.map(f64::from))).collect()
 }
 
-fn ages(solver: &Solver<f32>) -> Vec<ParticleAge> {
+fn ages(solver: &Solver<f32>) -> Vec<Particle> {
     let mut out = Vec::new();
-    solver.ages(BEADS, &mut out);
+    solver.particles(BEADS, &mut out);
     out
 }
 

@@ -28,7 +28,7 @@ fn places(solver: &Solver<f32>) -> Vec<Vec3> {
 
 fn count(solver: &Solver<f32>) -> usize {
     let mut ages = Vec::new();
-    solver.ages(BEADS, &mut ages);
+    solver.particles(BEADS, &mut ages);
     ages.len()
 }
 
@@ -140,12 +140,12 @@ fn a_particle_emits_splits_or_dies_when_it_collides() {
     assert_eq!(count(&dropped(NOTHING.clone(), 10)), 1);
     let emitted = dropped(CollisionEvent { emit: 3, ..NOTHING.clone() }, 8);
     let mut ages = Vec::new();
-    emitted.ages(BEADS, &mut ages);
+    emitted.particles(BEADS, &mut ages);
     assert_eq!(ages.len(), 4);
     // Falling 0.25 m takes 0.226 s, in the sixth frame; the emitted ones are younger by that.
     assert!(ages[0].age > 0.3 && ages[1..].iter().all(|one| one.age < 0.13 && one.lifespan == 10.0));
     let split = dropped(CollisionEvent { split: 3, ..NOTHING.clone() }, 8);
-    split.ages(BEADS, &mut ages);
+    split.particles(BEADS, &mut ages);
     assert!(ages.len() == 3 && ages.iter().all(|one| one.age == ages[0].age), "{ages:?}");
     assert_eq!(count(&dropped(CollisionEvent { die: true, ..NOTHING.clone() }, 8)), 0);
     assert_eq!(count(&dropped(CollisionEvent { die: true, emit: 5, ..NOTHING.clone() }, 8)), 5);
@@ -230,7 +230,7 @@ fn a_checkpoint_continues_ramps_and_events_with_the_same_bits() {
         assert_eq!(whole.state_hash(), resumed.state_hash(), "frame {k}");
     }
     let mut ages = Vec::new();
-    whole.ages(BEADS, &mut ages);
+    whole.particles(BEADS, &mut ages);
     assert!(ages.len() > 10 && ages[0].id == 9, "{ages:?}");
 }
 

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    Birth, ClothId, InvalidInput, ParticleAge, ParticleChange, Sanitized, StateView, unit_random,
+    Birth, ClothId, InvalidInput, Particle, ParticleChange, Sanitized, StateView, unit_random,
 };
 
 use crate::attributes::{Key, n_particle, particle};
@@ -129,11 +129,11 @@ impl EvaluationInterval<'_> {
     ) -> u64 {
         let mut invalid = 0;
         let (mut ages, mut fast, mut places) = (Vec::new(), Vec::new(), Vec::new());
-        view.ages(cloth, &mut ages);
+        view.particles(cloth, &mut ages);
         view.velocities(cloth, 1.0, &mut fast);
         view.positions(cloth, 1.0, &mut places);
         let seed = self.to.get(node, &particle::SEED) as u64;
-        for (place, &ParticleAge { id, age, lifespan }) in ages.iter().enumerate() {
+        for (place, &Particle { id, age, lifespan, .. }) in ages.iter().enumerate() {
             let motion = [fast[place], places[place]].map(|v| Vector3::from(v.map(f64::from)));
             let frame = self.from.frame();
             let before = self.values(motion, lifespan, (age, id, frame), randoms(id, frame, seed));

@@ -144,6 +144,13 @@ impl Program {
         self.nuclei().iter().any(|nucleus| nucleus.model.cloths().iter().any(ramps))
     }
 
+    /// Whether any particles have numbers, ages, lifespans and masses of their own.
+    pub fn has_individual_particles(&self) -> bool {
+        self.nuclei()
+            .iter()
+            .any(|nucleus| nucleus.model.cloths().iter().any(|cloth| cloth.particles.is_some()))
+    }
+
     /// Whether contact turns any particles.
     pub fn has_rotation(&self) -> bool {
         let rotates = |cloth: &Cloth| cloth.particles.as_ref().is_some_and(|particles| particles.rotates);

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    ClothId, ColliderId, ContactState, ParticleAge, ParticleLook, Sanitized, Stage, StateView, StepObserver,
+    ClothId, ColliderId, ContactState, Particle, ParticleLook, Sanitized, Stage, StateView, StepObserver,
     StepReport, SubstepIndex,
 };
 
@@ -75,9 +75,9 @@ impl StateView for CombinedState<'_> {
         part.orientations(id, out);
     }
 
-    fn ages(&self, cloth: ClothId, out: &mut Vec<ParticleAge>) {
+    fn particles(&self, cloth: ClothId, out: &mut Vec<Particle>) {
         let (part, id, _) = self.cloth(cloth);
-        part.ages(id, out);
+        part.particles(id, out);
     }
 
     fn collider_positions(&self, collider: ColliderId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {

@@ -237,7 +237,7 @@ impl BinaryStage {
             }
             Value::Ints(all) => self.array(Type::Int, all.len(), all.iter().flat_map(|x| x.to_le_bytes())),
             Value::Int64s(all) => {
-                self.array(Type::Int64, all.len(), all.iter().flat_map(|x| u64::from(*x).to_le_bytes()))
+                self.array(Type::Int64, all.len(), all.iter().flat_map(|x| x.to_le_bytes()))
             }
             Value::Floats(all) => {
                 self.array(Type::Float, all.len(), all.iter().flat_map(|x| x.to_le_bytes()))

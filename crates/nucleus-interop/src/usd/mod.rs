@@ -15,7 +15,9 @@ use crate::output::{Output, node_names};
 
 use binary::BinaryStage;
 use camera::write_camera;
-use particles::{extent_of_particles, have_looks, write_looks, write_orientations, write_widths};
+use particles::{
+    extent_of_particles, have_looks, write_looks, write_orientations, write_particles, write_widths,
+};
 use stage::{Attribute, Head, Prim, Stage, Value};
 use text::TextStage;
 
@@ -108,13 +110,11 @@ fn write_object<R: Read + Seek>(
     if !have_looks {
         stage.relate("material:binding", &format!("{MATERIALS}/{name}"));
     }
-    // Particles that come and go have no constant list of ids.
-    if clip.count_change(object)?.is_none() {
-        write_topology(clip, object, is_mesh, stage)?;
-    }
     if is_mesh {
+        write_topology(clip, object, stage)?;
         write_texture_coordinates(clip, object, changes, stage);
     } else {
+        write_ids(clip, object, stage)?;
         write_widths(clip, object, have_looks, stage)?;
     }
     if have_looks {
@@ -155,53 +155,50 @@ fn write_object<R: Read + Seek>(
     Ok(extents)
 }
 
-/// Writes the topology: once, or at each sample at which it changes. USD holds such values until the next sample.
-fn write_topology<R: Read + Seek>(
+/// Writes the numbers of particles, so that other tools can identify each over time: their places, where none is born or
+/// dies. Without numbers of their own particles that come and go have none.
+fn write_ids<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
-    is_mesh: bool,
     stage: &mut impl Stage,
 ) -> Result<(), ExportError> {
-    if is_mesh {
-        stage.attribute(&Attribute::uniform("token", "subdivisionScheme"), &Value::Token("none"));
-        stage.attribute(&Attribute::uniform("token", "orientation"), &Value::Token("rightHanded"));
-        stage.attribute(&Attribute::uniform("bool", "doubleSided"), &Value::Bool(true));
-    }
-    let mut samples = vec![0];
-    samples.extend(clip.mesh_changes(object));
-    let count = topology(clip.object_at(object, 0)?, is_mesh).len();
-    for part in 0..count {
-        let mut held: Vec<(f64, Vec<u32>)> = Vec::new();
-        let mut attribute = None;
-        for &sample in &samples {
-            let time = clip.samples()[sample].frame_time;
-            let (own, values) = topology(clip.object_at(object, sample)?, is_mesh).swap_remove(part);
-            held.push((time, values));
-            attribute = Some(own);
-        }
-        let Some(attribute) = attribute else { continue };
-        let value = |values| if is_mesh { Value::Ints(values) } else { Value::Int64s(values) };
-        if let [(_, only)] = held.as_slice() {
-            stage.attribute(&attribute, &value(only));
-            continue;
-        }
-        stage.begin_samples(&attribute);
-        held.iter().for_each(|(time, values)| stage.sample(*time, &value(values)));
-        stage.end_samples();
+    let is_recorded = write_particles(clip, object, stage)?;
+    if !is_recorded && clip.count_change(object)?.is_none() {
+        let ids: Vec<u64> = (0..clip.object(object).rest.len() as u64).collect();
+        stage.attribute(&Attribute::of("int64[]", "ids"), &Value::Int64s(&ids));
     }
     Ok(())
 }
 
-/// The topology attributes. Particles have ids, so that other tools can identify each over time.
-fn topology(object: &ObjectInfo, is_mesh: bool) -> Vec<(Attribute<'static>, Vec<u32>)> {
-    if !is_mesh {
-        return vec![(Attribute::of("int64[]", "ids"), (0..object.rest.len() as u32).collect())];
+/// Writes the topology: once, or at each sample at which it changes. USD holds such values until the next sample.
+fn write_topology<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    stage: &mut impl Stage,
+) -> Result<(), ExportError> {
+    stage.attribute(&Attribute::uniform("token", "subdivisionScheme"), &Value::Token("none"));
+    stage.attribute(&Attribute::uniform("token", "orientation"), &Value::Token("rightHanded"));
+    stage.attribute(&Attribute::uniform("bool", "doubleSided"), &Value::Bool(true));
+    let mut samples = vec![0];
+    samples.extend(clip.mesh_changes(object));
+    let parts: [(&str, fn(&ObjectInfo) -> Vec<u32>); 2] = [
+        ("faceVertexCounts", |object| object.faces.iter().map(|face| face.len() as u32).collect()),
+        ("faceVertexIndices", |object| object.faces.corners().to_vec()),
+    ];
+    for (name, values) in parts {
+        let attribute = Attribute::of("int[]", name);
+        if let [only] = samples[..] {
+            stage.attribute(&attribute, &Value::Ints(&values(clip.object_at(object, only)?)));
+            continue;
+        }
+        stage.begin_samples(&attribute);
+        for &sample in &samples {
+            let time = clip.samples()[sample].frame_time;
+            stage.sample(time, &Value::Ints(&values(clip.object_at(object, sample)?)));
+        }
+        stage.end_samples();
     }
-    let counts = object.faces.iter().map(|face| face.len() as u32).collect();
-    vec![
-        (Attribute::of("int[]", "faceVertexCounts"), counts),
-        (Attribute::of("int[]", "faceVertexIndices"), object.faces.corners().to_vec()),
-    ]
+    Ok(())
 }
 
 /// Texture coordinates belong to the first mesh; a mesh that changes has none.

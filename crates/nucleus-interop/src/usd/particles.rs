@@ -1,8 +1,9 @@
-//! Particles in USD: widths, colours and opacities, orientations, and the extent of the balls.
+//! Particles in USD: widths, colours and opacities, orientations, numbers and ages, and the
+//! extent of the balls.
 
 use std::io::{Read, Seek};
 
-use nucleus_core::ParticleLook;
+use nucleus_core::{Particle, ParticleLook};
 
 use crate::clip::{Clip, Extent, extent};
 use crate::error::ExportError;
@@ -104,27 +105,82 @@ pub(super) fn write_orientations<R: Read + Seek>(
     object: usize,
     stage: &mut impl Stage,
 ) -> Result<(), ExportError> {
-    // Samples before the first particle is born.
-    let mut empty = 0;
-    let mut begins = true;
-    for index in 0..clip.samples().len() {
-        let time = clip.samples()[index].frame_time;
-        match clip.orientations(object, index)? {
-            None if begins => empty += 1,
-            found => {
-                if std::mem::take(&mut begins) {
-                    stage.begin_samples(&Attribute::of("quatf[]", "primvars:orient").interpolated("vertex"));
-                    let before = &clip.samples()[..empty];
-                    before
-                        .iter()
-                        .for_each(|sample| stage.sample(sample.frame_time, &Value::Quaternions(&[])));
-                }
-                stage.sample(time, &Value::Quaternions(&found.unwrap_or_default()));
-            }
+    let orient = Attribute::of("quatf[]", "primvars:orient").interpolated("vertex");
+    write_recorded(
+        clip,
+        stage,
+        &orient,
+        |clip, at| clip.orientations(object, at),
+        |values, write| {
+            write(&Value::Quaternions(values));
+        },
+    )?;
+    Ok(())
+}
+
+/// Writes the numbers of particles, so that other tools can identify each over time, and their ages, lifespans and masses.
+/// Returns whether any are recorded.
+pub(super) fn write_particles<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    stage: &mut impl Stage,
+) -> Result<bool, ExportError> {
+    let ids = Attribute::of("int64[]", "ids");
+    let is_recorded = write_recorded(
+        clip,
+        stage,
+        &ids,
+        |clip, at| clip.particles(object, at),
+        |particles, write| {
+            let ids: Vec<u64> = particles.iter().map(|particle| particle.id).collect();
+            write(&Value::Int64s(&ids));
+        },
+    )?;
+    let primvars: [(&str, fn(&Particle) -> f64); 3] = [
+        ("primvars:age", |particle| particle.age),
+        ("primvars:lifespan", |particle| particle.lifespan),
+        ("primvars:mass", |particle| particle.mass),
+    ];
+    for (name, fact) in primvars {
+        let primvar = Attribute::of("float[]", name).interpolated("vertex");
+        write_recorded(
+            clip,
+            stage,
+            &primvar,
+            |clip, at| clip.particles(object, at),
+            |particles, write| {
+                let values: Vec<f32> = particles.iter().map(|particle| fact(particle) as f32).collect();
+                write(&Value::Floats(&values));
+            },
+        )?;
+    }
+    Ok(is_recorded)
+}
+
+/// Writes an attribute of particles at each sample, empty where nothing is recorded; no attribute where nothing ever is.
+/// Returns whether there is one.
+fn write_recorded<R: Read + Seek, T>(
+    clip: &mut Clip<R>,
+    stage: &mut impl Stage,
+    attribute: &Attribute,
+    read: impl Fn(&mut Clip<R>, usize) -> Result<Option<Vec<T>>, ExportError>,
+    with_value: impl Fn(&[T], &mut dyn FnMut(&Value)),
+) -> Result<bool, ExportError> {
+    let mut first = None;
+    for sample in 0..clip.samples().len() {
+        let Some(values) = read(clip, sample)? else { continue };
+        if !values.is_empty() {
+            first = Some(sample);
+            break;
         }
     }
-    if !begins {
-        stage.end_samples();
+    let Some(first) = first else { return Ok(false) };
+    stage.begin_samples(attribute);
+    for sample in 0..clip.samples().len() {
+        let values = if sample < first { None } else { read(clip, sample)? };
+        let time = clip.samples()[sample].frame_time;
+        with_value(&values.unwrap_or_default(), &mut |value| stage.sample(time, value));
     }
-    Ok(())
+    stage.end_samples();
+    Ok(true)
 }

@@ -61,7 +61,7 @@ pub(super) enum Value<'a> {
     Vec3([f32; 3]),
     Matrix([[f64; 4]; 4]),
     Ints(&'a [u32]),
-    Int64s(&'a [u32]),
+    Int64s(&'a [u64]),
     Floats(&'a [f32]),
     Vec2s(&'a [[f32; 2]]),
     Vec3s(&'a [[f32; 3]]),

@@ -9,7 +9,7 @@ use nucleus_cache::{
     Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Recorder, RunInfo, Source,
     TextureCoordinates,
 };
-use nucleus_core::{ClothId, ColliderId, ParticleLook, StateView, StepObserver, SubstepIndex};
+use nucleus_core::{ClothId, ColliderId, Particle, ParticleLook, StateView, StepObserver, SubstepIndex};
 
 pub const START: i32 = 3;
 pub const END: i32 = 12;
@@ -39,12 +39,14 @@ pub struct Variant {
     pub wall: &'static str,
     /// Each particle of the dust has a look of its own.
     pub looks: bool,
+    /// In each frame a particle of the dust dies and another is born.
+    pub lives: bool,
 }
 
 impl Default for Variant {
     fn default() -> Self {
         let (fps, substeps, units_per_metre) = (24.0, SUBSTEPS, UNITS);
-        Self { tears: false, fps, substeps, units_per_metre, wall: "wall", looks: false }
+        Self { tears: false, fps, substeps, units_per_metre, wall: "wall", looks: false, lives: false }
     }
 }
 
@@ -67,6 +69,7 @@ pub fn record(path: &Path, variant: Variant) {
         units_per_metre: variant.units_per_metre,
         frames_per_second: variant.fps,
         looks: variant.looks,
+        particles: variant.lives,
         detail: Detail::Substeps,
         velocities: true,
         rotation: true,
@@ -180,6 +183,16 @@ pub fn looks(time: f32) -> Vec<ParticleLook> {
     (0..5).map(look).collect()
 }
 
+/// The particles of the dust where they live for five frames; their numbers need more than 32 bits.
+pub fn lives(time: f32) -> Vec<Particle> {
+    let life = |k: u8| {
+        let age = f64::from(4 - k) + f64::from(time.fract());
+        let lifespan = if k == 0 { f64::INFINITY } else { 5.0 };
+        Particle { id: (1 << 33) + u64::from(k) + time as u64, age, lifespan, mass: 0.5 + f64::from(k) }
+    };
+    (0..5).map(life).collect()
+}
+
 fn dust(time: f32) -> Vec<[f32; 3]> {
     (0..5u8).map(|k| [f32::from(k), 3.0 - 0.01 * time * time, f32::from(k * k) + 0.1 * time]).collect()
 }
@@ -208,6 +221,10 @@ impl StateView for State {
     fn looks(&self, cloth: ClothId, out: &mut Vec<ParticleLook>) {
         out.clear();
         out.extend((self.variant.looks && cloth != SHEET).then(|| looks(self.time)).into_iter().flatten());
+    }
+    fn particles(&self, cloth: ClothId, out: &mut Vec<Particle>) {
+        out.clear();
+        out.extend((self.variant.lives && cloth != SHEET).then(|| lives(self.time)).into_iter().flatten());
     }
     fn positions(&self, cloth: ClothId, _: f64, out: &mut Vec<[f32; 3]>) {
         *out = positions(if cloth == SHEET { "ns:sheet|1" } else { "dust" }, self.time);

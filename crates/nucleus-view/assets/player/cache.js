@@ -2,7 +2,7 @@
 
 import { openIndex } from "./mcap.js";
 import { planeAt, planeOf } from "./plane.js";
-import { readCameras, readContacts, readLooks, readPoints, readTopology } from "./messages.js";
+import { readCameras, readContacts, readLooks, readParticleNumbers, readPoints, readTopology } from "./messages.js";
 import { readChunk } from "./records.js";
 import { DamagedFrame, PlayerError } from "./source.js";
 
@@ -80,8 +80,9 @@ export class Cache {
     const { frame, substep, substeps, time } = times[last];
     const contacts = this.objects.map((object) => times[last].contacts.get(object.contacts) ?? null);
     const looks = this.objects.map((object) => times[last].looks.get(object.looks) ?? null);
+    const numbers = this.objects.map((object) => times[last].numbers.get(object.numbers) ?? null);
     const at = { index, timeIndex: last, times: times.length, frame, substep, substeps, time };
-    return { ...at, report, positions, velocities, meshes, contacts, looks };
+    return { ...at, report, positions, velocities, meshes, contacts, looks, numbers };
   }
 
   // Unpacks the next frames. A damaged frame is reported when it is shown.
@@ -158,7 +159,7 @@ export class Cache {
     const { messages } = await readChunk(this.source, chunk);
     const times = new Map(); // by nanoseconds
     const at = (time) => {
-      const entry = times.get(time) ?? { nanoseconds: time, positions: new Map(), contacts: new Map(), looks: new Map() };
+      const entry = times.get(time) ?? { nanoseconds: time, positions: new Map(), contacts: new Map(), looks: new Map(), numbers: new Map() };
       times.set(time, entry);
       return entry;
     };
@@ -181,6 +182,10 @@ export class Cache {
         const looks = readLooks(data);
         at(time).looks.set(channel, looks);
         count(looks.byteLength);
+      } else if (encoding === "nucleus.particles.v1") {
+        const numbers = readParticleNumbers(data);
+        at(time).numbers.set(channel, numbers);
+        count(numbers.byteLength);
       } else if (encoding === "nucleus.topology.v1" && time > 0) {
         meshes.push({ channel, time, topology: this.topologyOf(channel, data) });
         count(data.length);
@@ -228,7 +233,8 @@ function objectsOf(channels) {
     .map(({ id, topic }) => {
       const name = topic.replace(/^\//, "").replace(/\/topology$/, "");
       const channel = (kind) => all.find((channel) => channel.topic === `/${name}/${kind}`)?.id;
-      return { name, mesh: id, points: channel("points"), contacts: channel("contacts"), looks: channel("looks") };
+      const [points, contacts, looks, numbers] = ["points", "contacts", "looks", "particles"].map(channel);
+      return { name, mesh: id, points, contacts, looks, numbers };
     })
     .filter(({ points }) => points !== undefined);
 }
@@ -244,6 +250,7 @@ function readRun(metadata) {
     start: number("start", 0),
     end: number("end", null),
     fps: Math.max(number("fps", 24), 1e-3),
+    unitsPerMetre: number("units_per_metre", 1),
     version: run.get("version") ?? "",
     scene: scene.get("path") ?? "",
     cameras: readCameras(metadata.get("nucleus.cameras")),

@@ -8,6 +8,7 @@ export function optionsOf({ timeline, scene, camera, series }) {
   const options = new URLSearchParams();
   const { cache, marks, speed } = timeline;
   options.set("frame", cache.frameNumber(timeline.index));
+  Number.isFinite(timeline.timeIndex) && options.set("time", timeline.timeIndex);
   if (camera.track) {
     options.set("camera", camera.track.name);
   } else {
@@ -40,7 +41,8 @@ export async function applyAddress(player) {
   const { timeline, scene } = player;
   applyMarks(player, options);
   if (options.has("frame")) {
-    await timeline.go(timeline.cache.indexOf(Number(options.get("frame"))));
+    const time = Number.parseInt(options.get("time") ?? "", 10);
+    await timeline.go(timeline.cache.indexOf(Number(options.get("frame"))), time >= 0 ? time : Infinity);
   }
   for (const colour of COLOURINGS.filter((name) => options.has(name))) {
     player.setFullScale(colour, Number(options.get(colour)));

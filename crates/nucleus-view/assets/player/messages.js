@@ -50,6 +50,16 @@ export function readLooks(data) {
   return unshuffle(reader.take(32 * count), 8 * count);
 }
 
+// The numbers of particles at one recorded time, by which a particle is known from frame to frame.
+export function readParticleNumbers(data) {
+  const reader = new Reader(data);
+  reader.take(12); // frame, substep, substeps
+  const count = reader.u32();
+  reader.take(16); // zeros, time
+  const words = new Uint32Array(unshuffle(reader.take(20 * count), 5 * count).buffer);
+  return Float64Array.from({ length: count }, (_, p) => words[5 * p] + 2 ** 32 * words[5 * p + 1]);
+}
+
 // Reverses the byte shuffle: four planes, the lowest byte of every float first.
 function unshuffle(planes, count) {
   const bits = new Uint32Array(count);

@@ -14,6 +14,8 @@ import { nearestValues, particleSpeeds } from "./speed.js";
 import { hasSurfaces, withSurfaces } from "./surface.js";
 import { Timeline } from "./timeline.js";
 
+// The speed of full saturation at first, in metres per second: what falls from a metre and a bit.
+const FULL_SPEED = 5;
 const COLOURINGS = ["strain", "speed", "contacts", "difference"];
 const DEFAULT_STAGE = { low: [-1, -1, -1], high: [1, 1, 1] };
 
@@ -58,6 +60,7 @@ export class Player {
     const stage = await this.findStage(cache);
     scene.setStage(stage.box, stage.floor);
     camera.frame(stage.box, scene.aspect);
+    scene.look.scales.speed = cache.run.unitsPerMetre * FULL_SPEED;
     showIncomplete(cache);
     this.describe(cache, name);
     camera.track = cache.run.cameras[0] ?? null;

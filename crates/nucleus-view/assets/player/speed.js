@@ -1,9 +1,9 @@
 // The speed of particles, and of points of their surface.
 
 // The speed of each particle of object `k`, in units per second: from its velocity where that is recorded, else from its
-// positions at this frame and the one before. Null where it is not known: a particle has no name, so once particles are
-// born or die, that of the frame before cannot be found.
-export function particleSpeeds(topology, k, { positions, velocities, time, index }, before) {
+// positions at this frame and the one before, 0 if it is new. Null where it is not known: particles that are born or die
+// without a recorded number cannot be found in the frame before.
+export function particleSpeeds(topology, k, { positions, velocities, numbers, time, index }, before) {
   const vectors = velocities[k];
   if (vectors) {
     return Float32Array.from({ length: vectors.length / 3 }, (_, p) => (
@@ -11,13 +11,23 @@ export function particleSpeeds(topology, k, { positions, velocities, time, index
     ));
   }
   const [now, then] = [positions[k], before?.positions[k] ?? null];
+  if (numbers[k] && then) {
+    const places = new Map(Array.from(before.numbers[k] ?? [], (number, p) => [number, p]));
+    return distances(now, then, (p) => places.get(numbers[k][p])).map((x) => x / (time - before.time) || 0);
+  }
   if (now.length !== 3 * topology.points || (then ? then.length !== now.length : index > 0)) {
     return null;
   }
   const seconds = then && time - before.time;
-  return Float32Array.from({ length: now.length / 3 }, (_, p) => (
-    then ? Math.hypot(...[0, 1, 2].map((axis) => now[3 * p + axis] - then[3 * p + axis])) / seconds || 0 : 0
-  ));
+  return distances(now, then ?? now, (p) => p).map((x) => x / seconds || 0);
+}
+
+// The distance of each point of `now` to that of `then` at the place that `placeOf` gives; 0 where it gives none.
+function distances(now, then, placeOf) {
+  return Float32Array.from({ length: now.length / 3 }, (_, p) => {
+    const place = placeOf(p);
+    return place === undefined ? 0 : Math.hypot(...[0, 1, 2].map((axis) => now[3 * p + axis] - then[3 * place + axis]));
+  });
 }
 
 // For each point, the value of the nearest of `others`; 0 where none is near.
