@@ -22,6 +22,7 @@ use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::untangling::{Correction, Intersection};
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::material::ContactMaterial;
+use crate::contact::pair_table::PairTable;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::Elements;
 use crate::input::validation::is_in_range;
@@ -165,7 +166,7 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     (rows == 0 || rows == state.anchor.len() && !model.colliders.is_empty()).then_some(())?;
     contact.resize_bounds(rows);
     load_column(&mut contact.bounds_violated, from)?;
-    contact.collider_materials = Encode::decode(from)?;
+    contact.collider_materials = PairTable::new(model.colliders.len(), Encode::decode(from)?);
     contact.ground_materials = Encode::decode(from)?;
     load_column(&mut contact.touches, from)?;
     contact.material_maps.kept_gaps = Encode::decode(from)?;
@@ -380,7 +381,7 @@ fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: 
     let are_points = |points: &[u32]| {
         points.iter().all(|&point| is_point.get(point as usize).is_some_and(|&is_point| is_point))
     };
-    (materials.is_empty() || materials.len() == cloths.len() * cloths.len())
+    (materials.len() == 0 || materials.columns() == cloths.len())
         && cloth_contacts.overlapping.len() == materials.len()
         && cache.point_face.iter().all(|contact| contact.is_valid(are_points, materials.len()))
         && cache.edge_edge.iter().all(|contact| contact.is_valid(are_points, materials.len()))

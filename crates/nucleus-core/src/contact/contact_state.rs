@@ -8,6 +8,7 @@ use crate::contact::collider::contact::ColliderContact;
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::shortest_line;
+use crate::contact::pair_table::ContactMaterials;
 use crate::contact::system::ContactSystem;
 use crate::math::Real;
 use crate::model::Model;
@@ -215,7 +216,7 @@ impl<R: Real> ContactPoints<'_, R> {
             return;
         };
         let cache = &cloth_contacts.cache;
-        let materials = &cloth_contacts.materials[..];
+        let materials = &cloth_contacts.materials;
         cache.point_face.iter().for_each(|contact| self.set_cloth_state(contact, materials, states));
         cache.edge_edge.iter().for_each(|contact| self.set_cloth_state(contact, materials, states));
         cache.point_edge.iter().for_each(|contact| self.set_cloth_state(contact, materials, states));
@@ -229,7 +230,7 @@ impl<R: Real> ContactPoints<'_, R> {
     fn set_cloth_state<const N: usize, const M: usize>(
         &self,
         contact: &ClothContact<R, N, M>,
-        materials: &[Option<ContactMaterial<R>>],
+        materials: &ContactMaterials<R>,
         states: &mut HighestStates<'_>,
     ) {
         let place = |point: u32| self.state.position(point);

@@ -52,8 +52,7 @@ fn keep_released<R: Real>(contact: &mut ContactSystem<R>, state: &State<R>, rows
     let is_near = |[a, b]: [u32; 2]| {
         let Some(ClothContacts { elements, materials, .. }) = &*cloth_contacts else { return false };
         let [ours, theirs] = [a, b].map(|row| elements.cloth[row as usize] as usize);
-        let cloths = materials.len().isqrt();
-        let thickness = materials[ours * cloths + theirs].as_ref().map(|material| material.thickness);
+        let thickness = materials[[ours, theirs]].as_ref().map(|material| material.thickness);
         let apart = Vector3::from(state.position(a)) - Vector3::from(state.position(b));
         // Rows of particles have other particles later.
         ![a, b].iter().any(|row| elements.is_free_point[*row as usize])

@@ -171,8 +171,8 @@ impl<R: Real> ContactMaterial<R> {
         }
     }
 
-    /// Whether two sets of materials give the same candidates.
-    pub fn same_candidates(now: &[Option<Self>], before: &[Option<Self>]) -> bool {
+    /// Whether the materials of a pair in two frames give the same candidates.
+    pub fn same_candidates(now: &Option<Self>, before: &Option<Self>) -> bool {
         let of = |material: &Self| {
             (
                 material.thickness,
@@ -182,8 +182,7 @@ impl<R: Real> ContactMaterial<R> {
                 material.edges,
             )
         };
-        now.len() == before.len()
-            && now.iter().zip(before).all(|(now, before)| now.as_ref().map(of) == before.as_ref().map(of))
+        now.as_ref().map(of) == before.as_ref().map(of)
     }
 
     /// The same for a frame with this resistance model. Classic: frictions that add up to 1 or more grip, as in recorded

@@ -43,6 +43,7 @@
 //! | certificates for linear motion | [`ccd`] |
 //! | contacts as tasks that threads share | [`colouring`] |
 //! | thickness, friction and further attributes of a pair; vertex maps | [`material`], [`collider_maps`] |
+//! | a value for each pair of objects | [`pair_table`] |
 //! | the split of a push, friction, adhesion, the law of restitution | [`response`] |
 //! | restitution at the end of a step; of rigid bodies | [`restitution`], [`rigid_impact`] |
 //! | the positions that contacts read and write; counters | [`time_step`] |
@@ -117,6 +118,7 @@ pub mod kept_gaps;
 pub mod material;
 pub mod narrow_phase;
 pub mod pair_filter;
+pub mod pair_table;
 pub mod placed_surface;
 pub mod point_field;
 pub mod push_out;

@@ -55,8 +55,9 @@ pub fn push_out<R: Real>(
         let place = |row: u32| Point::from(state.position(row));
         let triangles = model.cloths[at].boundary.triangles.iter().map(|face| face.map(place)).collect();
         let own = &frame.cloths[at];
-        let materials = contact.cloth_contacts.as_ref().map_or(&[][..], |contacts| &contacts.materials);
-        let with = |cloth: usize| materials.get(at * model.cloths.len() + cloth).is_some_and(Option::is_some);
+        let materials =
+            contact.cloth_contacts.as_ref().map_or(&[][..], |contacts| contacts.materials.row(at));
+        let with = |cloth: usize| materials.get(cloth).is_some_and(Option::is_some);
         let collides = (0..model.cloths.len()).map(with).collect();
         let surface = PushOutSurface::new(triangles, own.push_out, own.thickness, collides);
         let others = (0..model.cloths.len()).filter(|&cloth| cloth != at);

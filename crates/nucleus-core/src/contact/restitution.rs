@@ -107,8 +107,7 @@ fn bounce<R: Real>(state: &mut State<R>, touch: &TouchingPoint<R>, restitution: 
 }
 
 fn restitution_at_cloth<R: Real>(pass: &mut ContactPass<'_, R>, restitution: Restitution<R>) {
-    let materials =
-        pass.contact.cloth_contacts.iter().flat_map(|contacts| contacts.materials.iter().flatten());
+    let materials = pass.contact.cloth_contacts.iter().flat_map(|contacts| contacts.materials.present());
     if !materials.into_iter().any(|material| material.has_restitution()) {
         return;
     }

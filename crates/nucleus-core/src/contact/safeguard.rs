@@ -120,8 +120,8 @@ fn mask_islands<R: Real>(contact: &mut ContactSystem<R>, is_unproven: impl Fn([b
     let marks = among_cloths.iter().zip(&*with_colliders);
     contact_mask
         .extend(marks.map(|marks| is_unproven([marks.0, marks.1].map(|mark| mark.load(Ordering::Relaxed)))));
-    if let Some(ClothContacts { cache, .. }) = cloth_contacts {
-        grow_to_islands(cache, contact_mask);
+    if let Some(contacts) = cloth_contacts {
+        grow_to_islands(contacts, contact_mask);
     }
 }
 

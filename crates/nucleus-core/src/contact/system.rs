@@ -16,6 +16,7 @@ use crate::contact::depenetration::Obstacle;
 use crate::contact::ground::Ground;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
+use crate::contact::pair_table::{ContactMaterials, PairTable};
 use crate::contact::response::TouchingPoint;
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::FrameInput;
@@ -48,7 +49,7 @@ pub struct ContactSystem<R: Real> {
     /// Points with new motion bounds, whose pairs are to be found again.
     pub bounds_violated: Vec<bool>,
     /// Contact material of each cloth with each collider in this frame, by cloth and collider.
-    pub collider_materials: Vec<Option<ContactMaterial<R>>>,
+    pub collider_materials: ContactMaterials<R>,
     /// Contact material of each cloth with the ground plane.
     pub ground_materials: Vec<Option<ContactMaterial<R>>>,
     /// Vertex maps of contact.
@@ -108,7 +109,7 @@ impl<R: Real> ContactSystem<R> {
             interval_bounds: Vec::new(),
             bound_growth: Vec::new(),
             bounds_violated: Vec::new(),
-            collider_materials: Vec::new(),
+            collider_materials: PairTable::EMPTY,
             ground_materials: Vec::new(),
             material_maps: MaterialMaps::new(cloths, models, state.anchor.len(), collider_maps),
             cloth_contacts: self_collides.then(|| ClothContacts::new(models, &state.anchor)),
@@ -165,8 +166,7 @@ impl<R: Real> ContactSystem<R> {
 
     /// The contact materials of a cloth with each collider.
     pub fn collider_materials_of(&self, cloth: usize) -> &[Option<ContactMaterial<R>>] {
-        let colliders = self.collider_states.len();
-        self.collider_materials.get(cloth * colliders..(cloth + 1) * colliders).unwrap_or_default()
+        self.collider_materials.row(cloth)
     }
 
     /// Whether a cloth collides with any collider in this frame.

@@ -6,6 +6,7 @@ use crate::contact::bvh::Aabb;
 use crate::contact::cloth::contact::ClothContact;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase::shortest_line;
+use crate::contact::pair_table::ContactMaterials;
 use crate::contact::response::Restitution;
 use crate::contact::system::ContactSystem;
 use crate::math::Real;
@@ -112,7 +113,7 @@ impl<R: Real> TouchFinder<'_, R> {
         else {
             return;
         };
-        let (cache, materials) = (&contacts.cache, &contacts.materials[..]);
+        let (cache, materials) = (&contacts.cache, &contacts.materials);
         cache.point_face.iter().for_each(|contact| self.find_at(contact, materials));
         cache.point_edge.iter().for_each(|contact| self.find_at(contact, materials));
         for contact in cache.point_point.iter() {
@@ -125,11 +126,7 @@ impl<R: Real> TouchFinder<'_, R> {
         }
     }
 
-    fn find_at<const M: usize>(
-        &mut self,
-        contact: &ClothContact<R, 1, M>,
-        materials: &[Option<ContactMaterial<R>>],
-    ) {
+    fn find_at<const M: usize>(&mut self, contact: &ClothContact<R, 1, M>, materials: &ContactMaterials<R>) {
         let [point] = contact.ours;
         if !self.rotates(point) {
             return;
@@ -145,7 +142,7 @@ impl<R: Real> TouchFinder<'_, R> {
     fn touching_line<const M: usize>(
         &self,
         contact: &ClothContact<R, 1, M>,
-        materials: &[Option<ContactMaterial<R>>],
+        materials: &ContactMaterials<R>,
     ) -> Option<(Vector3<f64>, [f64; M])> {
         let place = |point: u32| self.state.position(point);
         let (normal, (ours, theirs), distance) =

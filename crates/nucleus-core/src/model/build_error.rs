@@ -89,6 +89,12 @@ pub enum BuildError {
         /// The largest room.
         most: usize,
     },
+    /// The solver has as many cloths as it can tell pairs of apart.
+    #[error("there are more than {most} cloths and objects of particles; one solver has {most} at most")]
+    TooManyCloths {
+        /// The largest number.
+        most: usize,
+    },
     /// The radius of particles is negative, NaN or too large.
     #[error("the radius of the particles must be from 0 to {MAX_COORDINATE:e} m, not {radius}")]
     BadRadius {

@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 
+use crate::contact::cloth::contact::ContactKind;
 use crate::input::{ClothId, ColliderId};
 use crate::model::build_error::BuildError;
 use crate::model::objects::{Cloth, Collider, LinkOrder, Mass};
@@ -30,8 +31,11 @@ impl ModelBuilder {
     ///
     /// # Errors
     /// When the mesh is empty, without area, not finite or names points it does not have, a face of woven cloth has no
-    /// direction of the warp, or the mass is not positive; see [`BuildError`].
+    /// direction of the warp, the mass is not positive, or there are 11,585 cloths already; see [`BuildError`].
     pub fn cloth(&mut self, cloth: Cloth) -> Result<ClothId, BuildError> {
+        if self.cloths.len() >= ContactKind::MAX_CLOTHS {
+            return Err(BuildError::TooManyCloths { most: ContactKind::MAX_CLOTHS });
+        }
         match &cloth.particles {
             Some(particles) => check_particles(&cloth.surface, particles)?,
             None => check_surface(&cloth.surface)?,

@@ -128,13 +128,10 @@ fn collect_results<R: Real>(
     counters: &mut ContactCounters,
 ) {
     let lists = contact.lists_of(cloth);
-    let ContactSystem {
-        collider_contacts, collider_materials, collider_states, free_tasks, free_gap, ..
-    } = contact;
-    let materials = &collider_materials[cloth * collider_states.len()..];
+    let ContactSystem { collider_contacts, collider_materials, free_tasks, free_gap, .. } = contact;
     let lists = &mut collider_contacts[lists];
     for list in lists.iter_mut() {
-        list.depenetration.begin_points(materials[list.collider].as_ref());
+        list.depenetration.begin_points(collider_materials[[cloth, list.collider]].as_ref());
     }
     for near in free_tasks[..tasks].iter_mut().filter_map(|task| task.get_mut().ok()) {
         counters.add(&near.counters);

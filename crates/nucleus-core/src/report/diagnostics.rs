@@ -299,9 +299,7 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, ground_gap: f64, schedule: &Sch
     } = solver;
     let mut least = ground_gap.min(*free_gap);
     for list in collider_contacts.iter() {
-        let Some(material) = collider_materials[list.cloth * collider_states.len() + list.collider] else {
-            continue;
-        };
+        let Some(material) = collider_materials[[list.cloth, list.collider]] else { continue };
         let view = ColliderStepArgs {
             material,
             material_maps,

@@ -149,6 +149,15 @@ fn events_and_radii_that_are_no_numbers_are_refused() {
 }
 
 #[test]
+fn more_cloths_than_have_a_number_for_each_pair_are_refused() {
+    let mut builder = ModelBuilder::new();
+    let one = cloth(&[], Particles { capacity: 1, ..Particles::default() });
+    (0..11_585).for_each(|at| assert_eq!(builder.cloth(one.clone()), Ok(ClothId(at))));
+    let error = BuildError::TooManyCloths { most: 11_585 };
+    assert_eq!(builder.cloth(one.clone()), Err(error));
+}
+
+#[test]
 fn links_are_sorted_from_points_of_the_cloth_only() {
     let (mut builder, _) = drape(9, 24.0);
     let from = |point: u32| LinkOrder::Outwards(vec![PointId(point)]);

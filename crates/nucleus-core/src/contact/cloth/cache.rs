@@ -8,6 +8,7 @@ use crate::contact::cloth::contact_list::{Blocks, ContactList, Replaced};
 use crate::contact::cloth::found_contacts::FoundContacts;
 use crate::contact::cloth::frozen::Frozen;
 use crate::contact::collider::affine_motion::AffineMotion;
+use crate::contact::pair_table::ContactMaterials;
 use crate::contact::response::Restitution;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
@@ -160,7 +161,7 @@ impl<R: Real> ContactCache<R> {
     }
 
     /// The pairs of cloths in contact, each at least once.
-    pub fn cloth_pairs(&self, materials: usize) -> impl Iterator<Item = [usize; 2]> {
+    pub fn cloth_pairs(&self, materials: &ContactMaterials<R>) -> impl Iterator<Item = [usize; 2]> {
         let Self { point_face, edge_edge, point_edge, point_point } = self;
         let pairs = point_face.of_each_task().map(move |contact| contact.cloths(materials));
         let pairs = pairs.chain(edge_edge.of_each_task().map(move |contact| contact.cloths(materials)));
@@ -168,8 +169,11 @@ impl<R: Real> ContactCache<R> {
         pairs.chain(point_point.of_each_task().map(move |contact| contact.cloths(materials)))
     }
 
-    /// The pairs of cloths of all contacts that overlap, given the number of materials.
-    pub(super) fn overlapping_pairs(&self, materials: usize) -> impl Iterator<Item = [usize; 2]> {
+    /// The pairs of cloths of all contacts that overlap.
+    pub(super) fn overlapping_pairs(
+        &self,
+        materials: &ContactMaterials<R>,
+    ) -> impl Iterator<Item = [usize; 2]> {
         let Self { point_face, edge_edge, point_edge, point_point } = self;
         let pairs = point_face.overlapping_pairs(materials).chain(edge_edge.overlapping_pairs(materials));
         let pairs = pairs.chain(point_edge.overlapping_pairs(materials));

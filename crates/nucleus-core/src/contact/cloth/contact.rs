@@ -10,6 +10,7 @@ use crate::contact::cloth::local_anchors::LocalAnchors;
 use crate::contact::cloth::swept_points::ElementPoints;
 use crate::contact::material::{ContactMaterial, ContactPoints, MaterialMaps};
 use crate::contact::narrow_phase::{ElementPositions, gap_along, shortest_line};
+use crate::contact::pair_table::ContactMaterials;
 use crate::contact::time_step::PositionWriter;
 use crate::math::{Real, Row4, add, sub};
 use crate::state::State;
@@ -30,7 +31,7 @@ pub struct ClothStep<'a, R> {
     /// The cloths whose contacts are resolved; all where it is empty.
     pub mask: &'a [bool],
     /// Contact materials, by cloth and cloth.
-    pub materials: &'a [Option<ContactMaterial<R>>],
+    pub materials: &'a ContactMaterials<R>,
     /// Vertex maps of contact attributes.
     pub material_maps: &'a MaterialMaps<R>,
     /// Length of the step in seconds.
@@ -51,14 +52,13 @@ pub struct FrictionAnchors<'a, R> {
 }
 
 impl<R> FrictionAnchors<'_, R> {
-    /// Whether two cloths intersect, given the index of their material among all.
+    /// Whether two cloths intersect, given their pair in the order of their contacts.
     #[inline(always)]
-    pub(super) fn are_intersecting(&self, material: u32, materials: usize) -> bool {
+    pub(super) fn are_intersecting(&self, cloths: impl FnOnce() -> [usize; 2]) -> bool {
         if self.intersecting.is_empty() {
             return false;
         }
-        let cloths = materials.isqrt() as u32;
-        let [a, b] = [material / cloths, material % cloths];
+        let [a, b] = cloths().map(|cloth| cloth as u32);
         self.intersecting.contains(&[a.min(b), a.max(b)])
     }
 }
@@ -67,7 +67,7 @@ impl<'a, R: Real> ClothStep<'a, R> {
     /// A step of `h` seconds that resolves the contacts of all cloths, without friction anchors.
     pub fn new(
         state: &'a mut State<R>,
-        materials: &'a [Option<ContactMaterial<R>>],
+        materials: &'a ContactMaterials<R>,
         material_maps: &'a MaterialMaps<R>,
         h: f64,
     ) -> Self {
@@ -90,12 +90,6 @@ impl<'a, R: Real> ClothStep<'a, R> {
 }
 
 impl<R: Real> ClothStep<'_, R> {
-    /// Whether contacts of the cloths of a material are resolved.
-    #[inline(always)]
-    pub(super) fn resolves(&self, material: u32) -> bool {
-        self.mask.is_empty() || self.mask[material as usize / self.materials.len().isqrt()]
-    }
-
     #[inline(always)]
     pub(super) fn row(&self, point: u32) -> Row4<R> {
         self.writer.row(point) // tasks of a phase share no block, and a contact's points are in its task's blocks
@@ -135,10 +129,13 @@ impl ContactKind {
     /// The two were nearer than their thickness when they were found, and have not been apart since.
     pub const OVERLAPS: u32 = 1 << 27;
 
+    /// The number of cloths of which every pair still has an index below the facts.
+    pub const MAX_CLOTHS: usize = (Self::OVERLAPS as usize).isqrt();
+
     /// A contact of a material, of which nothing is known.
     #[inline(always)]
     pub fn of_material(material: u32) -> Self {
-        debug_assert!(material < Self::OVERLAPS, "11,585 cloths have as many pairs");
+        debug_assert!(material < Self::OVERLAPS, "the builder refuses more than MAX_CLOTHS");
         Self { word: material }
     }
 
@@ -255,31 +252,29 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// The contact material of the two cloths.
     #[inline(always)]
     pub(super) fn material<'a>(&self, step: &ClothStep<'a, R>) -> Option<&'a ContactMaterial<R>> {
-        step.materials.get(self.params.kind.material() as usize)?.as_ref()
+        step.materials.values().get(self.params.kind.material() as usize)?.as_ref()
     }
 
     /// Whether this pass resolves it.
     #[inline(always)]
     pub(super) fn is_resolved(&self, step: &ClothStep<'_, R>) -> bool {
-        step.mask.is_empty() || step.resolves(self.params.kind.material())
+        step.mask.is_empty() || step.mask[self.cloths(step.materials)[0]]
     }
 
     /// The motion of its island in the step to which its own is truncated, in metres.
     pub(super) fn drift(&self, step: &ClothStep<'_, R>) -> [R; 3] {
-        step.drift.get(self.cloths(step.materials.len())[0]).copied().flatten().unwrap_or([R::ZERO; 3])
+        step.drift.get(self.cloths(step.materials)[0]).copied().flatten().unwrap_or([R::ZERO; 3])
     }
 
-    /// The cloths of its two sides, given the number of materials.
-    pub fn cloths(&self, materials: usize) -> [usize; 2] {
-        let (material, cloths) = (self.params.kind.material() as usize, materials.isqrt());
-        [material / cloths, material % cloths]
+    /// The cloths of its two sides.
+    #[inline(always)]
+    pub fn cloths(&self, materials: &ContactMaterials<R>) -> [usize; 2] {
+        materials.pair(self.params.kind.material() as usize)
     }
 
     /// Marks the cloths of its two sides.
-    pub(super) fn mark_cloths(&self, marks: &[AtomicBool]) {
-        let (material, cloths) = (self.params.kind.material() as usize, marks.len());
-        marks[material / cloths].store(true, Ordering::Relaxed);
-        marks[material % cloths].store(true, Ordering::Relaxed);
+    pub(super) fn mark_cloths(&self, materials: &ContactMaterials<R>, marks: &[AtomicBool]) {
+        self.cloths(materials).into_iter().for_each(|cloth| marks[cloth].store(true, Ordering::Relaxed));
     }
 
     /// The points of the two and their weights.
@@ -303,7 +298,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     #[inline(always)]
     pub fn thickness_at(
         &self,
-        materials: &[Option<ContactMaterial<R>>],
+        materials: &ContactMaterials<R>,
         material_maps: &MaterialMaps<R>,
         weights: &([R; N], [R; M]),
     ) -> R {
@@ -314,7 +309,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         if material_maps.thickness.is_empty() {
             return most;
         }
-        materials[self.params.kind.material() as usize].as_ref().map_or(most, there)
+        materials.values()[self.params.kind.material() as usize].as_ref().map_or(most, there)
     }
 
     /// Whether the gap along the normal exceeds `least` metres and any rounding error, as far as a fast test can tell.

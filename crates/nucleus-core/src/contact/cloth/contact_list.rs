@@ -10,6 +10,7 @@ use crate::contact::cloth::contact::{ClothContact, ClothStep};
 use crate::contact::cloth::contact_task::ContactTask;
 use crate::contact::cloth::found_contacts::{FoundContacts, FoundPairs};
 use crate::contact::colouring::{Colouring, SERIAL};
+use crate::contact::pair_table::ContactMaterials;
 use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
@@ -133,8 +134,8 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         tasks.map(|task| pool.least(task.contacts(), ratio)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The pair of cloths of each contact that overlaps, given the number of materials.
-    pub fn overlapping_pairs(&self, materials: usize) -> impl Iterator<Item = [usize; 2]> {
+    /// The pair of cloths of each contact that overlaps.
+    pub fn overlapping_pairs(&self, materials: &ContactMaterials<R>) -> impl Iterator<Item = [usize; 2]> {
         self.iter().filter(|contact| contact.overlaps()).map(move |contact| contact.cloths(materials))
     }
 
@@ -221,7 +222,7 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
         self.count(pool, |contact| {
             let has_pushed = contact.is_resolved(step) && contact.resolve(step);
             if has_pushed {
-                contact.mark_cloths(has_touched);
+                contact.mark_cloths(step.materials, has_touched);
             }
             has_pushed
         })

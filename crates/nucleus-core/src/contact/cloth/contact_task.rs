@@ -108,7 +108,7 @@ impl<R: Real, const N: usize, const M: usize> ContactTask<R, N, M> {
         for &at in &self.uncertified {
             let contact = &mut self.contacts[at as usize];
             if !contact.certify(step) {
-                contact.mark_cloths(unproven);
+                contact.mark_cloths(step.materials, unproven);
                 count += 1;
             }
         }

@@ -14,6 +14,7 @@ use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::search::{RefreshKind, SearchInput};
 use crate::contact::cloth::untangling::Untangling;
 use crate::contact::material::ContactMaterial;
+use crate::contact::pair_table::{ContactMaterials, PairTable};
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::parallel::disjoint::DisjointSlice;
@@ -25,10 +26,10 @@ pub struct ClothContacts<R> {
     /// The elements of all cloths.
     pub elements: ElementGroups,
     /// Contact materials in this frame, by cloth and cloth.
-    pub materials: Vec<Option<ContactMaterial<R>>>,
+    pub materials: ContactMaterials<R>,
     /// Whether the two cloths of each material may overlap, since the scene brought them together. In other cloths, what is
     /// nearer than its thickness is pressed together, and bears loads.
-    pub overlapping: Vec<bool>,
+    pub overlapping: PairTable<bool>,
     /// The motion bound of each point over the candidate interval.
     pub trajectories: Trajectories<R>,
     /// Anchors for fast gaps.
@@ -55,8 +56,8 @@ impl<R: Real> ClothContacts<R> {
         let rows = anchors.len();
         Self {
             elements: ElementGroups::new(cloths, anchors),
-            materials: Vec::new(),
-            overlapping: Vec::new(),
+            materials: PairTable::EMPTY,
+            overlapping: PairTable::EMPTY,
             trajectories: Trajectories::new(rows),
             local_anchors: LocalAnchors::default(),
             interval_start: vec![Row4::ZERO; rows],
@@ -102,19 +103,21 @@ impl<R: Real> ClothContacts<R> {
 
     /// Has the pairs searched anew that other materials than `before` may find, from one side each: of cloths with other
     /// settings, and not of all that they can touch.
-    pub(super) fn search_changed(&mut self, before: &[Option<ContactMaterial<R>>]) {
+    pub(super) fn search_changed(&mut self, before: &ContactMaterials<R>) {
         let Self { elements, materials, overlapping, bounds_violated, .. } = self;
-        let cloths = materials.len().isqrt();
-        overlapping.resize(materials.len(), true);
-        let is_changed = |pair: usize| {
-            let before = before.get(pair..=pair).unwrap_or_default();
-            !ContactMaterial::same_candidates(&materials[pair..=pair], before)
+        let cloths = materials.columns();
+        if overlapping.len() == 0 {
+            *overlapping = PairTable::of([cloths; 2], |_| true);
+        }
+        let is_changed = |pair: [usize; 2]| {
+            let same = |before| ContactMaterial::same_candidates(&materials[pair], before);
+            !before.get(pair).is_some_and(same)
         };
         let mut counts = vec![0; cloths];
-        let mut changed: Vec<bool> = (0..materials.len()).map(is_changed).collect();
-        for pair in (0..materials.len()).filter(|&pair| changed[pair]) {
+        let mut changed = PairTable::of([cloths; 2], is_changed);
+        for pair in (0..changed.len()).map(|index| changed.pair(index)).filter(|&pair| changed[pair]) {
             overlapping[pair] = true;
-            [pair / cloths, pair % cloths].into_iter().for_each(|side| counts[side] += 1);
+            pair.into_iter().for_each(|side| counts[side] += 1);
         }
         let mut is_searched = vec![false; cloths];
         // A greedy vertex cover.
@@ -122,7 +125,7 @@ impl<R: Real> ClothContacts<R> {
         {
             is_searched[most] = true;
             for other in 0..cloths {
-                for pair in [most * cloths + other, other * cloths + most] {
+                for pair in [[most, other], [other, most]] {
                     if std::mem::take(&mut changed[pair]) {
                         [most, other].into_iter().for_each(|side| counts[side] -= 1);
                     }
@@ -136,41 +139,37 @@ impl<R: Real> ClothContacts<R> {
     /// Finds which cloths still overlap: those with such a contact, and those that intersect. After a search for all contacts.
     pub(super) fn find_overlapping(&mut self) {
         let Self { materials, overlapping, cache, untangling, .. } = self;
-        if overlapping.contains(&true) || untangling.any() {
-            let cloths = materials.len().isqrt();
-            overlapping.fill(false);
+        if overlapping.values().contains(&true) || untangling.any() {
+            overlapping.values_mut().fill(false);
             let intersecting = untangling.cloth_pairs().iter().map(|pair| pair.map(|cloth| cloth as usize));
-            for [a, b] in cache.overlapping_pairs(materials.len()).chain(intersecting) {
-                (overlapping[a * cloths + b], overlapping[b * cloths + a]) = (true, true);
+            for [a, b] in cache.overlapping_pairs(materials).chain(intersecting) {
+                (overlapping[[a, b]], overlapping[[b, a]]) = (true, true);
             }
         }
     }
 
     /// Whether a cloth can collide with itself or with another in this frame.
     pub fn touches(&self, cloth: usize) -> bool {
-        (0..self.materials.len().isqrt()).any(|other| self.touch(cloth, other))
+        (0..self.materials.columns()).any(|other| self.touch(cloth, other))
     }
 
     /// Whether two cloths can collide in this frame.
     pub fn touch(&self, cloth: usize, other: usize) -> bool {
-        let cloths = self.materials.len().isqrt();
-        let of = |ours: usize, theirs: usize| self.materials[ours * cloths + theirs].is_some();
-        of(cloth, other) || of(other, cloth)
+        self.materials[[cloth, other]].is_some() || self.materials[[other, cloth]].is_some()
     }
 
     /// Whether any two cloths can collide in this frame.
     pub fn is_enabled(&self) -> bool {
-        self.materials.iter().any(Option::is_some)
+        self.materials.present().next().is_some()
     }
 
     /// Sets the margin of the boxes of each cloth: half of what its own elements reach.
     fn set_margins(&mut self) {
         let Self { materials, buffers: SearchBuffers { margins, .. }, .. } = self;
-        let cloths = materials.len().isqrt();
         let reach = |material: &ContactMaterial<R>| material.thickness * material.adhesion_range;
-        let of_cloth = |cloth: usize| materials[cloth * (cloths + 1)].as_ref().map_or(0.0, reach);
+        let of_cloth = |cloth: usize| materials[[cloth; 2]].as_ref().map_or(0.0, reach);
         margins.clear();
-        margins.extend((0..cloths).map(|cloth| of_cloth(cloth) as f32 * 0.5 * (1.0 + 1e-5)));
+        margins.extend((0..materials.columns()).map(|cloth| of_cloth(cloth) as f32 * 0.5 * (1.0 + 1e-5)));
     }
 
     /// Updates the bounds of points, and of the groups that contain a point whose bound has changed. Finds which points of

@@ -9,8 +9,8 @@ use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::local_origins::OriginShift;
 use crate::contact::cloth::search::SearchInput;
 use crate::contact::cloth::untangling::{Correction, Intersection, Untangling, Wing, pierces};
-use crate::contact::material::ContactMaterial;
 use crate::contact::pair_filter::PairFilter;
+use crate::contact::pair_table::ContactMaterials;
 use crate::math::{Real, Row4, add, cross, dot, scale, sub};
 use crate::model::ClothModel;
 use crate::parallel::thread_pool::ThreadPool;
@@ -21,7 +21,7 @@ use crate::union_find::UnionFind;
 pub fn find_intersections<R: Real>(
     elements: &ElementGroups,
     bounds: (&ElementBounds, &[GroupBounds]),
-    materials: &[Option<ContactMaterial<R>>],
+    materials: &ContactMaterials<R>,
     input: &SearchInput<'_, R>,
     untangling: &mut Untangling,
     pool: &ThreadPool,
@@ -52,7 +52,7 @@ pub fn find_intersections<R: Real>(
 struct IntersectionSearch<'a, R> {
     elements: &'a ElementGroups,
     bounds: (&'a ElementBounds, &'a [GroupBounds]),
-    materials: &'a [Option<ContactMaterial<R>>],
+    materials: &'a ContactMaterials<R>,
     cloths: &'a [ClothModel<R>],
     anchors: &'a [[f64; 3]],
     displacement: &'a [Row4<R>],
@@ -64,7 +64,7 @@ impl<R: Real> IntersectionSearch<'_, R> {
     /// All edges of a group that pierce a face of a cloth.
     fn find_with(&self, group: u32, cloth: usize, found: &mut Vec<Intersection>) {
         let own = self.elements.groups[group as usize].cloth as usize;
-        let material = &self.materials[own * self.cloths.len() + cloth];
+        let material = &self.materials[[own, cloth]];
         if !material.as_ref().is_some_and(|material| material.strength == [R::ONE; 2]) {
             return;
         }

@@ -2,7 +2,6 @@
 //!
 //! What one island needs changes no bit of another.
 
-use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::material::ContactMaterial;
 use crate::contact::system::ContactPass;
@@ -10,11 +9,11 @@ use crate::math::{Real, Row4, add, sub};
 use crate::union_find::UnionFind;
 
 /// Grows a mask of cloths until it holds whole islands.
-pub fn grow_to_islands<R: Real>(cache: &ContactCache<R>, mask: &mut [bool]) {
+pub fn grow_to_islands<R: Real>(contacts: &ClothContacts<R>, mask: &mut [bool]) {
     let mut has_grown = true;
     while has_grown {
         has_grown = false;
-        for [a, b] in cache.cloth_pairs(mask.len() * mask.len()) {
+        for [a, b] in contacts.cache.cloth_pairs(&contacts.materials) {
             if mask[a] != mask[b] {
                 (mask[a], mask[b]) = (true, true);
                 has_grown = true;
@@ -69,10 +68,7 @@ fn is_near_obstacle<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
             model.cloths[cloth].points().filter_map(|row| contact.ground.height(state.position(row)));
         heights.any(|height| height < 2.0 * material.thickness)
     };
-    let others = contact.cloth_contacts.iter().flat_map(|contacts| {
-        let cloths = model.cloths.len();
-        contacts.materials[cloth * cloths..(cloth + 1) * cloths].iter().flatten()
-    });
+    let others = contact.cloth_contacts.iter().flat_map(|contacts| contacts.materials.row(cloth)).flatten();
     lists.iter().any(|list| list.len() > 0 || !list.depenetration.points.is_empty())
         || contact.ground_materials[cloth].as_ref().is_some_and(is_low)
         || others.into_iter().any(|material| material.mobility != [R::ONE; 2])
@@ -82,7 +78,7 @@ fn islands<R: Real>(pass: &ContactPass<'_, R>) -> UnionFind {
     let cloths = pass.model.cloths.len();
     let mut islands = UnionFind::new(cloths);
     if let Some(ClothContacts { cache, materials, .. }) = &pass.contact.cloth_contacts {
-        cache.cloth_pairs(materials.len()).for_each(|[a, b]| islands.union(a as u32, b as u32));
+        cache.cloth_pairs(materials).for_each(|[a, b]| islands.union(a as u32, b as u32));
     }
     islands
 }

@@ -38,7 +38,7 @@ pub(super) struct ClothPair<'a, R> {
 impl<'a, R: Real> ClothPair<'a, R> {
     /// `None` where the two do not collide.
     pub(super) fn new(search: &'a ClothSearch<'a, R>, cloths: [usize; 2]) -> Option<Self> {
-        let material = search.materials[cloths[0] * search.input.cloths.len() + cloths[1]].as_ref()?;
+        let material = search.materials[cloths].as_ref()?;
         // Free points have no shape at rest, so they have no neighbours.
         let is_shaped =
             cloths[0] == cloths[1] && !search.input.cloths[cloths[0]].boundary.triangles.is_empty();
@@ -90,8 +90,7 @@ impl<'a, R: Real> ClothPair<'a, R> {
             return;
         }
         let known = found.candidates.len();
-        let [ours, theirs] = self.cloths;
-        let may_overlap = self.search.overlapping[ours * self.search.input.cloths.len() + theirs];
+        let may_overlap = self.search.overlapping[self.cloths];
         let SearchInput { anchors, displacement: [start, _], .. } = self.search.input;
         // SAFETY: these kernels ask for nothing but the lanes.
         #[allow(unsafe_code)]

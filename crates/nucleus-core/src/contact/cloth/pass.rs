@@ -6,6 +6,7 @@ use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::contact::{ClothStep, FrictionAnchors};
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
+use crate::contact::pair_table::PairTable;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::ClothId;
 use crate::input::frame::FrameInput;
@@ -17,16 +18,17 @@ use crate::state::State;
 /// Sets the contact materials of this frame, and carries motion bounds over to it. Before anchors move.
 pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSystem<R>, frame: &FrameInput) {
     let ContactSystem { cloth_contacts: Some(cloth_contacts), material_maps, .. } = contact else { return };
-    let materials: Vec<Option<ContactMaterial<R>>> =
-        (0..frame.cloths.len()).flat_map(|cloth| materials_of(cloth, frame, material_maps)).collect();
+    let cloths = frame.cloths.len();
+    let materials = (0..cloths).flat_map(|cloth| materials_of(cloth, frame, material_maps)).collect();
+    let materials = PairTable::new(cloths, materials);
     let is_full = |material: &Option<ContactMaterial<R>>| {
         material.as_ref().is_some_and(|material| !material.is_partial(material_maps))
     };
     // Pairs that could pass may intersect now. In the first frame all searches are due.
     let changed = |(now, before)| is_full(now) != is_full(before);
-    for (at, pair) in materials.iter().zip(&cloth_contacts.materials).enumerate() {
+    for (at, pair) in materials.values().iter().zip(cloth_contacts.materials.values()).enumerate() {
         if changed(pair) {
-            cloth_contacts.untangling.is_search_due[at / frame.cloths.len()] = true;
+            cloth_contacts.untangling.is_search_due[materials.pair(at)[0]] = true;
         }
     }
     let before = std::mem::replace(&mut cloth_contacts.materials, materials);
@@ -49,16 +51,15 @@ pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSyste
 pub fn balance_joined_cloths<R: Real>(contact: &mut ContactSystem<R>, links: &Links<R>) {
     let ContactSystem { cloth_contacts: Some(ClothContacts { materials, .. }), .. } = contact else { return };
     let has_layers = |material: &ContactMaterial<R>| material.mobility != [R::ONE; 2];
-    if !materials.iter().flatten().any(has_layers) {
+    if !materials.present().any(has_layers) {
         return;
     }
-    let cloths = materials.len().isqrt();
     for link in links.constraints.iter().flat_map(ConstraintLinks::joining) {
         let [LinkSide::Cloth { cloth: a, .. }, LinkSide::Cloth { cloth: b, .. }] = link.sides else {
             continue;
         };
         for [ours, theirs] in [[a, b], [b, a]].map(|pair| pair.map(ClothId::index)) {
-            materials[ours * cloths + theirs].iter_mut().for_each(|material| material.mobility = [R::ONE; 2]);
+            materials[[ours, theirs]].iter_mut().for_each(|material| material.mobility = [R::ONE; 2]);
         }
     }
 }
@@ -113,7 +114,7 @@ pub fn resolve_cloth_contacts<R: Real>(
 /// Applies adhesion of cloth with itself and with other cloth.
 pub fn apply_cloth_adhesion<R: Real>(pass: &mut ContactPass<'_, R>) {
     let has_adhesion =
-        |contacts: &ClothContacts<R>| contacts.materials.iter().flatten().any(ContactMaterial::has_adhesion);
+        |contacts: &ClothContacts<R>| contacts.materials.present().any(ContactMaterial::has_adhesion);
     if pass.contact.cloth_contacts.as_ref().is_some_and(has_adhesion) {
         update_cloth_candidates(pass);
         pass.with_cloth_contacts(|cache, step, pool| cache.adhere(step, pool));

@@ -238,8 +238,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let Some(anchors) = step.anchors else { return [R::ZERO; 3] };
         let start = self.positions(step.origins, |point| anchors.interval_start[point as usize].xyz());
         let in_interval = sub(line_before, self.contact_line(&start, weights));
-        let is_valid =
-            self.has_anchor() && !anchors.are_intersecting(self.params.kind.material(), step.materials.len());
+        let is_valid = self.has_anchor() && !anchors.are_intersecting(|| self.cloths(step.materials));
         let offset = if is_valid { add(self.friction_anchor, in_interval) } else { [R::ZERO; 3] };
         let offset = clamp_length(sub(offset, scale(self.normal, dot(offset, self.normal))), most);
         self.friction_anchor = sub(offset, in_interval);

@@ -5,8 +5,8 @@ use crate::contact::cloth::element_bounds::ElementBounds;
 use crate::contact::cloth::elements::{ClothGroup, ElementGroups, NewBounds};
 use crate::contact::cloth::group_bounds::GroupBounds;
 use crate::contact::cloth::untangling::Untangling;
-use crate::contact::material::ContactMaterial;
 use crate::contact::pair_filter::PairFilter;
+use crate::contact::pair_table::{ContactMaterials, PairTable};
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 
@@ -46,9 +46,9 @@ pub struct SearchInput<'a, R> {
 /// A search, shared by its tasks.
 pub(super) struct ClothSearch<'a, R> {
     pub(super) elements: &'a ElementGroups,
-    pub(super) materials: &'a [Option<ContactMaterial<R>>],
-    /// By material: whether the two cloths may overlap.
-    pub(super) overlapping: &'a [bool],
+    pub(super) materials: &'a ContactMaterials<R>,
+    /// Whether two cloths may overlap.
+    pub(super) overlapping: &'a PairTable<bool>,
     pub(super) bounds: &'a ElementBounds,
     pub(super) untangling: &'a Untangling,
     pub(super) input: SearchInput<'a, R>,

@@ -117,14 +117,13 @@ impl Untangling {
     /// Applies the corrections of all intersections that persist, at [`UNTANGLING_SPEED`] and the untangling rate of the
     /// material, in the shorter edge length of the two cloths. The time step has `h` seconds.
     pub fn untangle<R: Real>(&self, step: &ClothStep<'_, R>, elements: &ElementGroups, h: f64) {
-        let cloths = step.materials.len().isqrt();
         for intersection in &self.intersections {
             let [ours, theirs] = [intersection.edge[0], intersection.face[0]]
                 .map(|point| elements.cloth[point as usize] as usize);
             if !step.mask.is_empty() && !step.mask[ours] {
                 continue;
             }
-            let material = &step.materials[ours * cloths + theirs];
+            let material = &step.materials[[ours, theirs]];
             let rate = material.as_ref().map_or(1.0, |material| material.untangling_rate);
             let edge_length = elements.edge_lengths[ours].min(elements.edge_lengths[theirs]);
             intersection.untangle(step, edge_length * UNTANGLING_SPEED * h * rate);

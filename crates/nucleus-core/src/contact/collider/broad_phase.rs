@@ -56,7 +56,7 @@ pub fn update_collider_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth:
     let of_cloth = pass.contact.lists_of(cloth);
     let ContactPass {
         pool,
-        model: Model { cloths, colliders, .. },
+        model: Model { cloths, .. },
         contact:
             ContactSystem {
                 collider_contacts,
@@ -71,7 +71,7 @@ pub fn update_collider_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth:
     } = pass;
     let bounds = MotionBounds { boxes: window_bounds, first: 0, frame_travel: frame_travel[cloth] };
     for list in &mut collider_contacts[of_cloth] {
-        if let Some(material) = &collider_materials[cloth * colliders.len() + list.collider] {
+        if let Some(material) = &collider_materials[[cloth, list.collider]] {
             let is_at_rest = !collider_states[list.collider].moves && frame_travel[cloth] == [R::ZERO; 3];
             let growth = is_at_rest.then_some(&bound_growth[..]);
             list.activate(&bounds, window, material, growth, &cloths[cloth].blocks, pool);
@@ -151,7 +151,7 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
     for list in &mut collider_contacts[of_cloth] {
         let collider = list.collider;
         list.interval = interval;
-        let material = collider_materials[cloth * colliders.len() + collider];
+        let material = collider_materials[[cloth, collider]];
         let Some(material) = material.filter(|_| list.is_near) else {
             list.clear();
             continue;

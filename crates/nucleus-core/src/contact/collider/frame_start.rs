@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::motion_bounds::{MAX_TRAVEL, travel_at};
 use crate::contact::material::ContactMaterial;
+use crate::contact::pair_table::PairTable;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, add, dot};
@@ -178,21 +179,19 @@ fn update_materials<R: Real>(contact: &mut ContactSystem<R>, frame: &FrameInput)
             .map(|material| material.for_resistance(frame.resistance))
     };
     let maps = &contact.material_maps;
-    let with = |cloth: usize, collider: usize| {
+    let with = |[cloth, collider]: [usize; 2]| {
         let (own, theirs) = (&frame.cloths[cloth], &frame.colliders[collider]);
         let factors = maps.max_thickness_factors(cloth, collider);
         ContactMaterial::for_collider(own, theirs, factors, frame.layer_range)
             .map(|material| material.for_resistance(frame.resistance))
     };
-    let colliders = frame.colliders.len();
-    let pairs = (0..frame.cloths.len()).flat_map(|cloth| (0..colliders).map(move |at| (cloth, at)));
-    let materials: Vec<_> = pairs.map(|(cloth, collider)| with(cloth, collider)).collect();
+    let materials = PairTable::of([frame.cloths.len(), frame.colliders.len()], with);
     contact.ground_materials = settings().map(for_ground).collect();
     let before = std::mem::replace(&mut contact.collider_materials, materials);
     let is_same = |cloth: usize| {
-        let of_cloth = cloth * colliders..(cloth + 1) * colliders;
-        let before = before.get(of_cloth.clone()).unwrap_or_default();
-        ContactMaterial::same_candidates(&contact.collider_materials[of_cloth], before)
+        let (now, before) = (contact.collider_materials_of(cloth), before.row(cloth));
+        let mut pairs = now.iter().zip(before);
+        now.len() == before.len() && pairs.all(|(now, before)| ContactMaterial::same_candidates(now, before))
     };
     (0..frame.cloths.len()).map(is_same).collect()
 }

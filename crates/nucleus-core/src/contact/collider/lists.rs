@@ -16,9 +16,7 @@ pub fn for_contacts_of<R: Real>(
     let of_cloth = contact.lists_of(cloth);
     let ContactSystem { collider_states, collider_contacts, collider_materials, material_maps, .. } = contact;
     for list in &mut collider_contacts[of_cloth] {
-        let Some(material) = collider_materials[cloth * collider_states.len() + list.collider] else {
-            continue;
-        };
+        let Some(material) = collider_materials[[cloth, list.collider]] else { continue };
         let view = ColliderStepArgs {
             material,
             material_maps,

@@ -89,9 +89,7 @@ pub fn release_cleared_points<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usi
         &**contact;
     let mut range = R::ZERO;
     for list in &collider_contacts[of_cloth] {
-        let Some(material) = collider_materials[cloth * collider_states.len() + list.collider] else {
-            continue;
-        };
+        let Some(material) = collider_materials[[cloth, list.collider]] else { continue };
         let (h, time) = (pass.schedule.h, [pass.span.from, pass.span.to]);
         let args =
             ColliderStepArgs { material, material_maps, at: list.collider, h, time, interval: list.interval };
