@@ -96,7 +96,7 @@
 //! | `cloth::certify::MAX_ADVANCE`, `MIN_PLANE_SHARE` | 0.9, 0.05 | the next step starts with a gap on both sides |
 //! | `cloth::untangling::UNTANGLING_SPEED` | 12 e/s | half an edge length in a film frame |
 //! | `cloth::untangling::OVERSHOOT`, `MIN_SLANT` | 1.25, 0.1 | an end returns past the face; an edge parallel to it gives no direction |
-//! | `fallbacks` attempts | 4, 6, 8, 32 | push, scaled push, truncate, freeze |
+//! | `fallbacks::SEQUENCE` | 4 + 6, 8, 32 | attempts to push by all and by a share of the thickness, to truncate, to freeze |
 //! | `schedule::adaptive` | 1 e, e / 64, 25 % | advance and strain at which steps are split |
 
 pub mod boundary;

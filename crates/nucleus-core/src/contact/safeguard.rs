@@ -27,12 +27,12 @@ use crate::contact::cloth::islands::{find_drift, grow_to_islands, keep_momentum}
 use crate::contact::cloth::pass::resolve_cloth_contacts;
 use crate::contact::collider::affine_motion::AffineMotion;
 use crate::contact::collider::facing::find_room;
-use crate::contact::collider::free_points::settle_free_points;
+use crate::contact::collider::free_points::apply_fallbacks_to_free_points;
 use crate::contact::collider::pass::{
     accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
     revert_collider_contacts,
 };
-use crate::contact::fallbacks::{FREEZE_ATTEMPTS, PUSHING_ENDS, TRUNCATING_ENDS, thickness_scale};
+use crate::contact::fallbacks::{Attempt, Fallback, attempts_for_cloth};
 use crate::contact::ground::pass::certify_ground_contacts;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::math::{Real, Row4};
@@ -49,57 +49,91 @@ pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObs
 }
 
 fn certify_or_fall_back<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
-    let has_cloth_contact = pass.contact.cloth_contacts.as_ref().is_some_and(ClothContacts::is_enabled);
-    for attempt in 0..=TRUNCATING_ENDS + FREEZE_ATTEMPTS {
-        watch.enter(Stage::BroadPhase);
-        if has_cloth_contact {
-            update_cloth_candidates(pass);
-        }
-        watch.enter(Stage::Contact);
-        pass.contact.has_unproven.iter_mut().flatten().for_each(|mark| *mark.get_mut() = false);
-        let cloths = certify_cloth_contacts(pass);
-        let [mut sides, inseparable] = certify_collider_contacts(pass);
-        if sides > 0 {
-            settle_free_points(pass);
-            let is_left = pass.contact.has_unproven[1].iter_mut().any(|mark| *mark.get_mut());
-            sides = if is_left { sides } else { 0 };
-        }
-        sides += certify_ground_contacts(pass);
-        let unproven = [cloths, sides];
-        let is_last = attempt == TRUNCATING_ENDS + FREEZE_ATTEMPTS;
-        if unproven == [0, 0] || is_last {
-            *pass.counters.pairs_unresolved.get_mut() += unproven[0] + unproven[1] + inseparable;
-        }
-        if unproven == [0, 0] {
+    for attempt in attempts_for_cloth() {
+        let unproven = certify(pass, watch);
+        if !unproven.any() {
+            *pass.counters.pairs_unresolved.get_mut() += unproven.inseparable;
             return;
         }
-        if attempt < PUSHING_ENDS {
-            let thickness_scale = thickness_scale(attempt);
-            if unproven[0] > 0 {
+        fall_back(pass, attempt, &unproven, watch);
+    }
+    let unproven = certify(pass, watch);
+    let Unproven { among_cloths, with_obstacles, inseparable } = unproven;
+    *pass.counters.pairs_unresolved.get_mut() += among_cloths + with_obstacles + inseparable;
+    if unproven.any() {
+        accept_unresolved(pass);
+    }
+}
+
+/// The numbers of contacts without certificate.
+struct Unproven {
+    among_cloths: u64,
+    /// With colliders and the ground.
+    with_obstacles: u64,
+    /// Those of elements that no fallback separates.
+    inseparable: u64,
+}
+
+impl Unproven {
+    /// Whether a fallback may still certify any.
+    fn any(&self) -> bool {
+        self.among_cloths > 0 || self.with_obstacles > 0
+    }
+}
+
+/// Counts the contacts without certificate, after the fallbacks for free points, and marks their cloths.
+fn certify<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) -> Unproven {
+    watch.enter(Stage::BroadPhase);
+    if pass.contact.cloth_contacts.as_ref().is_some_and(ClothContacts::is_enabled) {
+        update_cloth_candidates(pass);
+    }
+    watch.enter(Stage::Contact);
+    pass.contact.has_unproven.iter_mut().flatten().for_each(|mark| *mark.get_mut() = false);
+    let among_cloths = certify_cloth_contacts(pass);
+    let [mut with_obstacles, inseparable] = certify_collider_contacts(pass);
+    if with_obstacles > 0 {
+        apply_fallbacks_to_free_points(pass);
+        let is_left = pass.contact.has_unproven[1].iter_mut().any(|mark| *mark.get_mut());
+        with_obstacles = if is_left { with_obstacles } else { 0 };
+    }
+    with_obstacles += certify_ground_contacts(pass);
+    Unproven { among_cloths, with_obstacles, inseparable }
+}
+
+/// Applies a fallback to the contacts without certificate.
+fn fall_back<R: Real>(
+    pass: &mut ContactPass<'_, R>,
+    attempt: Attempt,
+    unproven: &Unproven,
+    watch: &mut dyn StepObserver,
+) {
+    match attempt.fallback {
+        Fallback::Push => {
+            if unproven.among_cloths > 0 {
                 mask_islands(pass.contact, |[among_cloths, _]| among_cloths);
-                resolve_cloth_contacts(pass, thickness_scale, watch);
+                resolve_cloth_contacts(pass, attempt.thickness_scale, watch);
             }
             mask_islands(pass.contact, |[among_cloths, with_colliders]| among_cloths || with_colliders);
-            if attempt == 0 && sides > 0 {
+            if attempt.is_first() && unproven.with_obstacles > 0 {
                 find_room(pass);
             }
-            resolve_collider_contacts(pass, thickness_scale, watch);
+            resolve_collider_contacts(pass, attempt.thickness_scale, watch);
             pass.contact.contact_mask.clear();
-        } else if attempt < TRUNCATING_ENDS {
+        }
+        Fallback::Truncate => {
             pass.contact.carriers.clear();
-            if attempt == PUSHING_ENDS {
+            if attempt.is_first() {
                 find_drift(pass);
             }
             truncate(pass);
             revert_collider_contacts(pass);
-        } else if !is_last {
-            if attempt == TRUNCATING_ENDS {
+        }
+        Fallback::Freeze => {
+            if attempt.is_first() {
                 begin_freezing(pass);
             }
             revert_collider_contacts(pass);
             freeze(pass);
-        } else {
-            return accept_unresolved(pass);
         }
     }
 }

@@ -11,7 +11,7 @@ use std::sync::atomic::Ordering;
 
 use crate::contact::collider::near_collider::NearCollider;
 use crate::contact::collider::near_points::NearPoints;
-use crate::contact::fallbacks::{PUSHING_ENDS, TRUNCATE_ATTEMPTS, TRUNCATING_ENDS, thickness_scale};
+use crate::contact::fallbacks::{Attempt, Fallback, TRUNCATIONS, attempts_for_free_points};
 use crate::contact::ground::GroundContact;
 use crate::contact::response::{Impact, Restitution};
 use crate::contact::time_step::{ColliderStep, PositionWriter};
@@ -20,8 +20,6 @@ use crate::particles::free_pass::FreePass;
 
 /// Turns of colliders and the ground at a point that they push into each other.
 const TURNS: usize = 8;
-/// Attempts after which the ground pushes no more, and only the surface moves a point.
-const GROUND_ENDS: usize = PUSHING_ENDS + TRUNCATE_ATTEMPTS / 2;
 
 /// Points of a run: their buffers fit into the nearest cache.
 const RUN: usize = 128;
@@ -207,7 +205,7 @@ impl<R: Real> Run<'_, R> {
         }
         near.begin_fallbacks();
         while let Some(point) = near.next_unproven() {
-            let unresolved = self.settle(point, near);
+            let unresolved = self.apply_fallbacks(point, near);
             *near.counters.pairs_unresolved.get_mut() += unresolved;
         }
         if self.pass.now.span.to >= 1.0 {
@@ -218,18 +216,16 @@ impl<R: Real> Run<'_, R> {
     }
 
     /// Applies the fallbacks to a point until it has its certificates. Returns the number of contacts without.
-    fn settle(&self, point: u32, near: &mut NearPoints<R>) -> u64 {
+    fn apply_fallbacks(&self, point: u32, near: &mut NearPoints<R>) -> u64 {
         let mut unproven = 0;
-        for attempt in 0..TRUNCATING_ENDS {
-            let scale = thickness_scale(attempt);
-            if attempt < PUSHING_ENDS {
-                self.push_by_colliders(Some(point), scale, near);
-            } else {
-                self.revert(point, near);
+        for Attempt { fallback, number, thickness_scale } in attempts_for_free_points() {
+            match fallback {
+                Fallback::Push => self.push_by_colliders(Some(point), thickness_scale, near),
+                Fallback::Truncate | Fallback::Freeze => self.revert(point, near),
             }
-            if attempt < GROUND_ENDS
-                && let Some(ground) = self.ground(scale)
-            {
+            // In the last attempts the ground does not push any more, and only the surface moves the point.
+            let ground_pushes = fallback == Fallback::Push || number < TRUNCATIONS / 2;
+            if ground_pushes && let Some(ground) = self.ground(thickness_scale) {
                 ground.resolve(point..point + 1);
             }
             unproven = self.certify(point, near);

@@ -12,7 +12,7 @@ use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::lists::for_contacts_of;
 use crate::contact::collider::motion_bounds::{box_contains, travel_at};
 use crate::contact::collider::sweep::resolve_point;
-use crate::contact::fallbacks::{PUSHING_ENDS, TRUNCATING_ENDS, thickness_scale};
+use crate::contact::fallbacks::{Fallback, attempts_for_free_points};
 use crate::contact::ground::pass::push_by_ground;
 use crate::contact::system::ContactPass;
 use crate::math::Real;
@@ -20,10 +20,10 @@ use crate::parallel::disjoint::DisjointSlice;
 
 /// Applies the fallbacks to the cloths that are marked as having contacts without certificate, where they are free points by
 /// themselves. Unmarks those that have none left.
-pub fn settle_free_points<R: Real>(pass: &mut ContactPass<'_, R>) {
+pub fn apply_fallbacks_to_free_points<R: Real>(pass: &mut ContactPass<'_, R>) {
     for cloth in 0..pass.model.cloths.len() {
         let is_marked = pass.contact.has_unproven[1][cloth].load(Ordering::Relaxed);
-        if is_marked && is_independent(pass, cloth) && settle(pass, cloth) {
+        if is_marked && is_independent(pass, cloth) && apply_fallbacks(pass, cloth) {
             pass.contact.has_unproven[1][cloth].store(false, Ordering::Relaxed);
         }
     }
@@ -35,31 +35,20 @@ fn is_independent<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
         && !pass.contact.cloth_contacts.as_ref().is_some_and(|contacts| contacts.touches(cloth))
 }
 
-/// Returns whether every contact has a certificate.
-fn settle<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) -> bool {
+/// Applies the fallbacks to the points of a cloth. Returns whether every contact has a certificate.
+fn apply_fallbacks<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) -> bool {
     let mut points = Vec::new();
     let of_cloth = pass.contact.lists_of(cloth);
     pass.contact.collider_contacts[of_cloth].iter_mut().for_each(|list| points.append(&mut list.unproven));
-    for attempt in 0..TRUNCATING_ENDS {
+    for attempt in attempts_for_free_points() {
         points.sort_unstable();
         points.dedup();
         if points.is_empty() {
             break;
         }
-        if attempt < PUSHING_ENDS {
-            push(pass, cloth, &points, thickness_scale(attempt));
-        } else {
-            for_contacts_of(pass, cloth, |list, step, _, counters| {
-                for_contacts_of_points(list, &points, |list, own| {
-                    for &at in own {
-                        let contact = &mut list.point_face[at as usize];
-                        if contact.certify(&step) == Certificate::Unproven {
-                            contact.move_with_surface(&step);
-                            Outcome::Reverted.count(counters);
-                        }
-                    }
-                });
-            });
+        match attempt.fallback {
+            Fallback::Push => push(pass, cloth, &points, attempt.thickness_scale),
+            Fallback::Truncate | Fallback::Freeze => revert(pass, cloth, &points),
         }
         points = unproven(pass, cloth, &points);
     }
@@ -75,6 +64,21 @@ fn push<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, points: &[u32], th
         let step = step.with_thickness_scale(thickness_scale);
         for_contacts_of_points(list, points, |list, own| {
             resolve_point(DisjointSlice::new(&mut list.point_face), own, &step, counters);
+        });
+    });
+}
+
+/// Moves some points with the surfaces of their contacts without certificate.
+fn revert<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, points: &[u32]) {
+    for_contacts_of(pass, cloth, |list, step, _, counters| {
+        for_contacts_of_points(list, points, |list, own| {
+            for &at in own {
+                let contact = &mut list.point_face[at as usize];
+                if contact.certify(&step) == Certificate::Unproven {
+                    contact.move_with_surface(&step);
+                    Outcome::Reverted.count(counters);
+                }
+            }
         });
     });
 }
