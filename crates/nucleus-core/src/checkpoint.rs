@@ -33,7 +33,7 @@ use crate::model::{ClothModel, ColliderModel};
 use crate::particles::population::Population;
 use crate::solver::Solver;
 use crate::state::kinematics::update_anchors;
-use crate::state::{Chamber, State};
+use crate::state::{Chamber, State, inverse_mass_of};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
 const KIND: [u8; 8] = *b"solver15";
@@ -182,7 +182,7 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
         let rows = cloth.blocks.rows().start as usize..;
         state.inverse_mass[rows.start..cloth.blocks.rows().end as usize].fill(R::ZERO);
         for (row, &mass) in rows.zip(population.masses()) {
-            state.inverse_mass[row] = R::from_f64((1.0 / mass).clamp(1e-30, 1e30));
+            state.inverse_mass[row] = inverse_mass_of(mass);
         }
     }
     contact.collider_states.load(from)?;

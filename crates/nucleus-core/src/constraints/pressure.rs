@@ -51,7 +51,7 @@ const LEAST_VOLUME: f64 = 1e-3;
 pub const BURST_STRETCH: f64 = 5.0;
 
 /// Mean advance of a chamber's faces in a time step, as a share of the radius of its sphere.
-const MAX_ADVANCE: f64 = 1.0 / 8.0;
+const MAX_FACE_ADVANCE: f64 = 1.0 / 8.0;
 /// Growth in a time step, as a share of the volume that is left up to the burst sphere.
 const APPROACH: f64 = 1.0 / 4.0;
 
@@ -307,7 +307,7 @@ impl Sums {
         let after = volume + push * self.mobility;
         let side = if after < 0.0 { -1.0 } else { 1.0 };
         let (after, volume, before) = (side * after, side * volume, side * before);
-        let change = self.area * radius * MAX_ADVANCE;
+        let change = self.area * radius * MAX_FACE_ADVANCE;
         let most = before + change.min((sphere - before) * APPROACH);
         let limited = after.max((before - change).min(most)).min(most);
         let push = if limited == after { push } else { side * (limited - volume) / self.mobility };

@@ -17,7 +17,7 @@ use crate::state::State;
 
 /// Gap ratio up to which two elements are touching. Passes keep the full thickness along a plane; the constraint
 /// sweeps after them and curved meshes add a little.
-const TOUCHING: f64 = 1.02;
+const TOUCHING_RATIO: f64 = 1.02;
 /// Gap ratio below which a contact is compressed.
 const COMPRESSED: f64 = 0.9;
 /// Smallest weight at which the corner of an edge or a face takes part in a contact.
@@ -36,7 +36,7 @@ impl HighestStates<'_> {
     fn raise_by_gap(&mut self, point: u32, gap_ratio: f64) {
         if gap_ratio < COMPRESSED {
             self.raise(point, ContactState::Compressed);
-        } else if gap_ratio < TOUCHING {
+        } else if gap_ratio < TOUCHING_RATIO {
             self.raise(point, ContactState::Touching);
         }
     }
@@ -153,7 +153,7 @@ impl<R: Real> ContactPoints<'_, R> {
         };
         let (cloth, collider) = (&self.model.cloths[list.cloth], &self.model.colliders[list.collider]);
         let state = &self.contact.collider_states[list.collider];
-        let (origin, range) = (state.origin(state.now), material.thickness * TOUCHING);
+        let (origin, range) = (state.origin(state.now), material.thickness * TOUCHING_RATIO);
         for row in cloth.points() {
             let place = Vector3::from(self.state.position(row)) - origin;
             state.bvh.query(&Aabb::new(place.add_scalar(-range), place.add_scalar(range)), |face| {

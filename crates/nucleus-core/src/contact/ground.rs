@@ -24,8 +24,8 @@ use crate::schedule::StepInterval;
 /// Height in metres of points that do not collide with the plane.
 const FAR_ABOVE: f64 = 1e12;
 
-/// Depth below the thickness that is none, as a share of the thickness.
-const TOUCHING: f64 = 1e-3;
+/// Depth below the thickness, as a share of it, from which on a point is pressed: above rounding.
+const PRESSED_DEPTH: f64 = 1e-3;
 
 /// A point of a plane in metres, and its unit normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -259,7 +259,7 @@ impl<R: Real> GroundContact<'_, R> {
     pub fn is_pressed(&self, point: u32) -> bool {
         let row = self.writer.row(point);
         let gap = self.plane.height_now(point, row.xyz());
-        gap < self.thickness(point) * R::from_f64(1.0 - TOUCHING) && row.0[3] > R::ZERO
+        gap < self.thickness(point) * R::from_f64(1.0 - PRESSED_DEPTH) && row.0[3] > R::ZERO
     }
 
     /// The plane as a surface near a point that started within its thickness.

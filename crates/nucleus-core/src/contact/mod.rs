@@ -70,7 +70,7 @@
 //! | `collider::start_gaps::START_GAP` | 20 µm | a point that starts in a surface begins on its outer side (Classic) |
 //! | `response::DEPENETRATION_SPEED` | 1 m/s | a depth from before the step resolves without a jump |
 //! | `response::ADHESION_RANGE` | 1.5 t | adhesion acts on contacts that have just separated |
-//! | `response::TOUCHING` | 1e-3 t | gap that still counts as touching |
+//! | `response::TOUCHING_GAP` | 1e-3 t | gap that still counts as touching |
 //! | `collider::broad_phase::WINDOW_MARGIN`, `INTERVAL_MARGIN` | 0.05 t, 0.5 t | smaller: more searches; larger: more contacts |
 //! | `collider::motion_bounds::MAX_TRAVEL` | 2 e | longer boxes overlap too much |
 //! | `collider::broad_phase::WINDOW_STEPS` | 8 | life of an active set |
@@ -81,7 +81,7 @@
 //! | `collider::contact::PLANE_VALIDITY` | 1/256 of the rest gap | error of a plane around an edge below 1e-5 of it |
 //! | `ccd::CERTIFIED_GAP` | 0.02 t | far above rounding error |
 //! | `collider::sweep::MAX_ROUNDS` | 4 | over the contacts of one point while they push |
-//! | `rigid_impact::SUDDEN` | 1/24 s | a body that springs back within a film frame looks rigid |
+//! | `rigid_impact::IMPACT_DURATION` | 1/24 s | a body that springs back within a film frame looks rigid |
 //! | `rigid_impact::ROUNDS` | 20 | impulses of a crate that lands on a face |
 //! | `response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |
 //! | `room::FACING` | 0.5 | cosine: at a larger angle a point finds room beside the two surfaces |
@@ -93,7 +93,7 @@
 //! | `cloth::local_anchors::ROUNDINGS` | 96 | rounding errors of the extent, in a gap and its certificate |
 //! | `cloth::elements::GROUP_SIZE` | 8 triangles | within 10 % of the best on W3 |
 //! | `cloth::element_bounds::REST_GAP_SHARE` | 0.5 | a cloth thicker than its faces must still bend |
-//! | `cloth::certify::MAX_ADVANCE`, `MIN_PLANE_SHARE` | 0.9, 0.05 | the next step starts with a gap on both sides |
+//! | `cloth::certify::MAX_PLANE_APPROACH`, `MIN_PLANE_SHARE` | 0.9, 0.05 | the next step starts with a gap on both sides |
 //! | `cloth::untangling::UNTANGLING_SPEED` | 12 e/s | half an edge length in a film frame |
 //! | `cloth::untangling::OVERSHOOT`, `MIN_SLANT` | 1.25, 0.1 | an end returns past the face; an edge parallel to it gives no direction |
 //! | `fallbacks::SEQUENCE` | 4 + 6, 8, 32 | attempts to push by all and by a share of the thickness, to truncate, to freeze |

@@ -145,7 +145,7 @@ pub fn closest_on_triangle<R: Real>(p: [R; 3], [a, b, c]: [[R; 3]; 3]) -> [R; 3]
         return [zero, one - w, w];
     }
     let sum = va + vb + vc;
-    if sum <= R::from_f64(NEEDLE) * dot(ab, ab) * dot(ac, ac) {
+    if sum <= R::from_f64(THIN_CORNER) * dot(ab, ab) * dot(ac, ac) {
         return closest_on_needle(p, [a, b, c]);
     }
     let (v, w) = (ratio(vb, sum), ratio(vc, sum));
@@ -154,7 +154,7 @@ pub fn closest_on_triangle<R: Real>(p: [R; 3], [a, b, c]: [[R; 3]; 3]) -> [R; 3]
 
 /// Squared sine of the angle at the first corner of a triangle, below which products of scalar products lose its area to
 /// rounding in `f32`.
-const NEEDLE: f64 = 1e-2;
+const THIN_CORNER: f64 = 1e-2;
 
 /// [`closest_on_triangle`] where the point may be above the inside of a triangle almost without area: its closest edge, or
 /// above the inside, by cross products.

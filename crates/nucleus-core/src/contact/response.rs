@@ -165,7 +165,7 @@ pub fn share_per_step<R: Real>(grip: R, h: R) -> R {
 }
 
 /// Gap above the thickness up to which a contact is touching, as a share of the thickness.
-const TOUCHING: f64 = 1e-3;
+const TOUCHING_GAP: f64 = 1e-3;
 
 /// Restitution at a surface in one step.
 #[derive(Debug, Clone, Copy)]
@@ -224,7 +224,7 @@ impl<R: Real> Impact<R> {
 
 impl<R: Real> Restitution<R> {
     /// The largest gap that counts as touching, in contact thicknesses.
-    pub const MAX_TOUCHING_GAP: f64 = 1.0 + TOUCHING;
+    pub const MAX_TOUCHING_GAP: f64 = 1.0 + TOUCHING_GAP;
 
     /// Whether a gap counts as touching.
     pub fn touches(gap: R, thickness: R) -> bool {

@@ -19,10 +19,10 @@ use crate::state::State;
 
 /// Rounds of sequential impulses over the contacts of a body.
 const ROUNDS: usize = 20;
-/// Seconds within which an impact is that of a rigid body: a frame of film.
-const SUDDEN: f64 = 1.0 / 24.0;
+/// Seconds within which a body that springs back looks rigid: a frame of film.
+const IMPACT_DURATION: f64 = 1.0 / 24.0;
 /// Share of a body's largest moment of inertia that each axis has at least: a straight line has none about itself.
-const LEAST_INERTIA: f64 = 1e-6;
+const MIN_INERTIA: f64 = 1e-6;
 
 /// The share of an impulse that the whole of a cloth takes, by its index; 0 without `rigidity`.
 pub fn share_of_impact<R: Real>(schedule: &Schedule<R>, cloth: usize) -> f64 {
@@ -33,7 +33,7 @@ pub fn share_of_impact<R: Real>(schedule: &Schedule<R>, cloth: usize) -> f64 {
     let rigid = schedule.wholes.iter().find_map(rigid).unwrap_or(0.0);
     // The spring that moves a point by this share of its way in a step; an impact lasts for half of its period.
     let frequency = (rigid / (1.0 - rigid).max(f64::MIN_POSITIVE)).sqrt() / schedule.h;
-    (frequency * SUDDEN / PI).min(1.0)
+    (frequency * IMPACT_DURATION / PI).min(1.0)
 }
 
 /// The best rigid motion of a body.
@@ -126,7 +126,7 @@ impl RigidMotion {
             momentum -= push * mass(row);
             turning -= (place(row) - centre).cross(&push) * mass(row);
         }
-        inertia += Matrix3::identity() * (inertia.trace() * LEAST_INERTIA + f64::MIN_POSITIVE);
+        inertia += Matrix3::identity() * (inertia.trace() * MIN_INERTIA + f64::MIN_POSITIVE);
         let inverse_inertia = inertia.try_inverse().unwrap_or_default();
         let (velocity, spin) = (momentum / total, inverse_inertia * turning);
         Self { centre, velocity, spin, inverse_mass: 1.0 / total, inverse_inertia }

@@ -19,7 +19,7 @@ use crate::particles::pruning::Crowd;
 use crate::particles::ramps::apply_ramps;
 use crate::schedule::Schedule;
 use crate::solver::Solver;
-use crate::state::State;
+use crate::state::{State, inverse_mass_of};
 
 /// Removes the particles that have died in a substep, then adds those that were born in it, and those of collisions. The
 /// substep is counted from 1. Returns whether links have followed particles or gone with them.
@@ -215,7 +215,7 @@ fn set_row<R: Real>(
     velocity: Vector3<f64>,
     mass: f64,
 ) {
-    state.inverse_mass[row] = R::from_f64((1.0 / mass).clamp(1e-30, 1e30));
+    state.inverse_mass[row] = inverse_mass_of(mass);
     state.anchor[row] = position.into();
     state.displacement[row] = Row4([R::ZERO, R::ZERO, R::ZERO, state.inverse_mass[row]]);
     state.velocity[row] = Row4::new(velocity.into(), R::ZERO);

@@ -10,7 +10,7 @@ use crate::math::Real;
 use crate::particles::looks::speed;
 use crate::particles::population::Population;
 use crate::solver::Solver;
-use crate::state::State;
+use crate::state::{State, inverse_mass_of};
 
 /// Evaluates the ramps that act on the motion into the columns of all objects.
 pub fn apply_ramps<R: Real>(solver: &mut Solver<R>) {
@@ -61,7 +61,7 @@ fn apply_to<R: Real>(
 
 /// Gives a point another mass in kilograms; a pinned point stays pinned.
 fn set_mass<R: Real>(state: &mut State<R>, row: usize, mass: f64) {
-    state.inverse_mass[row] = R::from_f64((1.0 / mass).clamp(1e-30, 1e30));
+    state.inverse_mass[row] = inverse_mass_of(mass);
     if state.displacement[row].0[3] > R::ZERO {
         state.displacement[row].0[3] = state.inverse_mass[row];
     }

@@ -22,9 +22,9 @@ use crate::schedule::{Schedule, StepInterval};
 use crate::state::State;
 
 /// Distance that a collider may move in a time step, in edge lengths of the cloth; in Classic, relative to the cloth.
-const MAX_ADVANCE: f64 = 1.0;
+const MAX_COLLIDER_ADVANCE: f64 = 1.0;
 /// Distance in a time step below which a collider never splits it, in edge lengths.
-const MIN_ADVANCE: f64 = 1.0 / 64.0;
+const MIN_COLLIDER_ADVANCE: f64 = 1.0 / 64.0;
 /// Strain of a link above which the step is split. A sweep makes a link no stiffer than m / 2h², however stiff
 /// the cloth is: the load that it holds grows with the square of the number of splits.
 const STRAIN_LIMIT: f64 = 0.25;
@@ -53,14 +53,14 @@ pub fn splits<R: Real>(
             let travel = collider.max_travel * (span.to - span.from);
             let edges = travel / cloth.edge_length;
             let advance = if is_classic { (travel + own) / cloth.edge_length } else { edges };
-            let (is_pushed, is_fast) = (edges > MIN_ADVANCE, advance > MAX_ADVANCE);
+            let (is_pushed, is_fast) = (edges > MIN_COLLIDER_ADVANCE, advance > MAX_COLLIDER_ADVANCE);
             // A cloth without edges is points, which nothing can jump over.
             let may_split = advance.is_finite() && (is_pushed || is_fast);
             let bounds = || bounds.get_or_init(|| bounds_of(cloth, state));
             if !may_split || !is_near(bounds(), collider, span, material.thickness + own) {
                 continue;
             }
-            splits = splits.max(advance / MAX_ADVANCE);
+            splits = splits.max(advance / MAX_COLLIDER_ADVANCE);
             if is_pushed {
                 let strain = strain.get_or_init(|| largest_strain(cloth, state, rest_scale));
                 splits = splits.max((strain / STRAIN_LIMIT).min(MAX_STRAIN_SPLITS));

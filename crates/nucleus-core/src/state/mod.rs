@@ -69,6 +69,12 @@ pub struct State<R> {
     pub populations: Vec<Population>,
 }
 
+/// The inverse in 1/kg of a mass in kilograms. The mass of a sliver's point may vanish: its inverse stays finite in `f32`, and
+/// rounding never pins a point.
+pub fn inverse_mass_of<R: Real>(mass: f64) -> R {
+    R::from_f64((1.0 / mass).clamp(1e-30, 1e30))
+}
+
 /// The gas in one chamber.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chamber {

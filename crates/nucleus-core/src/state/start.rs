@@ -4,7 +4,7 @@ use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::model::objects::{Cloth, point_masses};
 use crate::particles::population::Population;
-use crate::state::State;
+use crate::state::{State, inverse_mass_of};
 
 impl<R: Real> State<R> {
     /// Columns for all cloths, at the start that each cloth gives. Padding points have no mass.
@@ -45,9 +45,7 @@ impl<R: Real> State<R> {
                 if let Some(velocity) = cloth.start.velocities.get(point) {
                     state.velocity[row] = Row4::new((*velocity).into(), R::ZERO);
                 }
-                // The mass of a sliver's point may vanish: its inverse stays finite in `f32`, and rounding never pins
-                // it.
-                state.inverse_mass[row] = R::from_f64((1.0 / masses[point]).clamp(1e-30, 1e30));
+                state.inverse_mass[row] = inverse_mass_of(masses[point]);
             }
         }
         state

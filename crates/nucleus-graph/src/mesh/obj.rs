@@ -26,7 +26,7 @@ mod uvs;
 
 /// The most corners of a face; the cap of a cylinder has the same limit. A fan of triangles makes all points of a face
 /// neighbours of one point, and the neighbours of a point are compared in pairs.
-const MAX_CORNERS: usize = 4096;
+pub(super) const MAX_CORNERS: usize = 4096;
 
 /// Reads a mesh. Its points are all vertices of the file in file order, used or not. Its faces are those of the
 /// file, degenerate ones too (see [`drop_degenerate_faces`](super::drop_degenerate_faces)). Lengths are as in the

@@ -23,7 +23,7 @@ use super::kernel::REACH;
 /// Distance that particles may move relative to each other, in rest distances: in any time step, and in one that is longer
 /// than that of the nucleus. Particles move along straight lines in a time step, which costs angular momentum where the
 /// liquid turns.
-const MAX_ADVANCE: f64 = 0.4;
+const MAX_PARTICLE_ADVANCE: f64 = 0.4;
 const MAX_LONG_ADVANCE: f64 = 0.1;
 /// The same of cloth relative to the liquid, in a time step that is longer than that of the nucleus: beyond a rest distance it
 /// would be on the far side of the particles that it is to push.
@@ -81,7 +81,7 @@ pub fn splits<R: Real>(model: &Model<R>, state: &State<R>, frame: &FrameInput, h
     let liquids = frame.cloths.iter().enumerate();
     let longest = |(cloth, settings): (usize, &ClothFrame)| {
         let settings = settings.liquid.as_ref()?;
-        Some(LiquidMotion { model, state, frame, cloth, settings }.longest_step(MAX_ADVANCE))
+        Some(LiquidMotion { model, state, frame, cloth, settings }.longest_step(MAX_PARTICLE_ADVANCE))
     };
     liquids.filter_map(longest).map(|longest| h / longest).fold(1.0, f64::max)
 }
@@ -104,7 +104,7 @@ pub struct LiquidMotion<'a, R: Real> {
 impl<R: Real> LiquidMotion<'_, R> {
     /// The number of its time steps in a frame that begins now.
     pub fn steps_in_frame(&self, schedule: &Schedule<R>) -> f64 {
-        let splits = (schedule.h / self.longest_step(MAX_ADVANCE)).ceil();
+        let splits = (schedule.h / self.longest_step(MAX_PARTICLE_ADVANCE)).ceil();
         if splits > 1.0 {
             return f64::from(schedule.substeps * schedule.steps) * splits;
         }

@@ -25,7 +25,7 @@ const SAMPLE_DISTANCE: f32 = 0.4;
 /// Distance from a sample below which its weight no longer grows.
 const NEAREST: f32 = 0.2;
 /// Distance of particles from the surface that they rest on.
-const TOUCHING: f32 = 0.5;
+const WALL_DISTANCE: f32 = 0.5;
 /// Samples along and across a triangle, at most: beyond, samples weigh more.
 const MAX_ROWS: u32 = 2048;
 
@@ -36,7 +36,7 @@ const REGION_MARGIN: f32 = 3.0;
 #[derive(Debug, Default)]
 pub struct Walls {
     /// The plane: its unit normal, the height of the origin above it, and how far contact keeps particles from it
-    /// beyond [`TOUCHING`].
+    /// beyond [`WALL_DISTANCE`].
     pub plane: Option<Plane>,
     /// Samples of surfaces that rest in this frame, and the box that they serve.
     still: Samples,
@@ -272,7 +272,7 @@ impl Samples {
         material: Material,
         [low, high]: [[f32; 3]; 2],
     ) {
-        let offset = (material.distance - TOUCHING).max(0.0);
+        let offset = (material.distance - WALL_DISTANCE).max(0.0);
         let reach = REACH + offset;
         let [low, high] = [low.map(|x| x - reach), high.map(|x| x + reach)];
         let beyond = |k: usize| {
@@ -420,7 +420,7 @@ mod tests {
             walls.sort();
             let mut sum = [0.0f32; 2];
             walls.near([0.1, distance, 0.05], |density, [_, y, _], _| sum = [sum[0] + density, sum[1] + y]);
-            let expected = half_space(TOUCHING)[0];
+            let expected = half_space(WALL_DISTANCE)[0];
             // Measured: 7.7 % too little at 0.5.
             assert!((sum[0] / expected - 1.0).abs() < 0.1, "{sum:?} of {expected} at {distance}");
             assert!(sum[1] < 0.0, "it pushes away");

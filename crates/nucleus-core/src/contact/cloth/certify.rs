@@ -7,7 +7,7 @@ use crate::math::{Real, add, dot, max, sub};
 
 /// Share of the distance to a division plane that a point may move: the rest is the gap at the start of the next
 /// step.
-const MAX_ADVANCE: f64 = 0.9;
+const MAX_PLANE_APPROACH: f64 = 0.9;
 /// Factor on the rounding error by which two elements must be separated at the start of a step. A pair that is
 /// certified at the end of one step must be separated at the start of the next, though the rounding error grows
 /// with displacement.
@@ -105,7 +105,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// of the step. The remaining height exceeds rounding error.
     fn truncate_point(&self, step: &ClothStep<'_, R>, point: u32, [before, now]: [R; 2], rounding_error: R) {
         let mut row = step.row(point);
-        let room = max(before * R::from_f64(1.0 - MAX_ADVANCE), rounding_error);
+        let room = max(before * R::from_f64(1.0 - MAX_PLANE_APPROACH), rounding_error);
         if now >= room || before - now <= R::MIN_DENOMINATOR || row.0[3] <= R::ZERO {
             return;
         }

@@ -6,15 +6,13 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::collider::separation::plane_along;
+use crate::contact::collider::separation::{CLEAR_GAP, plane_along};
 use crate::contact::narrow_phase::closest_on_triangle;
 
 type Point = Vector3<f64>;
 
 /// Distance from the plane of a face, in interaction ranges, beyond which a point begins with that plane.
 const FAR: f64 = 2.0;
-/// Gap in metres at the start of a step, far above rounding.
-const CLEAR_GAP: f64 = 1e-9;
 
 /// The motion of a point in a time step.
 #[derive(Debug, Clone, Copy)]

@@ -33,8 +33,9 @@ pub fn separated<const N: usize, const M: usize>(
 /// Share of a way below which a distance from a face is not clear, and share of a face that is its rim.
 const CLEAR: f64 = 1e-6;
 const RIM: f64 = 1e-3;
-/// Gap in metres along a way, far above rounding, so that of two faces with a common edge one at least is met.
-const CLEAR_GAP: f64 = 1e-9;
+/// Gap in metres of a plane at the start of a step, far above rounding, so that of two faces with a common edge one at least
+/// is met.
+pub(super) const CLEAR_GAP: f64 = 1e-9;
 
 /// Whether a point clearly passes through the interior of a face that does not turn: no subdivision of its way has a
 /// certificate.

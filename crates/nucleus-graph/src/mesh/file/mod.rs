@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use nucleus_core::{Faces, Surface};
 
-use super::obj::CornerUvs;
+use super::obj::{CornerUvs, MAX_CORNERS};
 use crate::memory::Size;
 
 use error::Fault;
@@ -30,9 +30,6 @@ mod source;
 mod track;
 mod usd;
 mod weld;
-
-/// The most corners of a face, as in an OBJ file.
-const MAX_CORNERS: usize = 4096;
 
 /// The formats of mesh files, by extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
