@@ -194,7 +194,7 @@ impl ResumedRun {
             match found {
                 Ok(simulation) => return Ok((simulation, frame)),
                 // Earlier checkpoints have no more room.
-                Err(error @ RestoreError::LittleRoom { .. }) => {
+                Err(error @ RestoreError::SmallerCapacity { .. }) => {
                     return self.restarted(program, threads, &error.to_string());
                 }
                 Err(error @ (RestoreError::Damaged | RestoreError::OtherVersion)) => {

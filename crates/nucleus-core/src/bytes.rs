@@ -270,9 +270,9 @@ pub enum RestoreError {
         /// Bits per number in this solver.
         wanted: u32,
     },
-    /// It has less room for particles than the model asks for. Rows are numbered by the room, and cannot be added.
-    #[error("the checkpoint has room for {found} particles of an object that can have {wanted}")]
-    LittleRoom {
+    /// It has a smaller capacity for particles than the model asks for. Rows are numbered by the capacity, and cannot be added.
+    #[error("the checkpoint has a capacity of {found} particles of an object that can have {wanted}")]
+    SmallerCapacity {
         /// Particles that the saved object can have.
         found: u64,
         /// Particles that the object of this model can have.

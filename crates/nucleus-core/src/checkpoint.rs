@@ -54,7 +54,7 @@ pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
 
 /// A solver that continues from where one of the same model was saved; see [`Solver::restored`].
 ///
-/// It has the room for particles of the saved one, because rows are numbered by it, and refuses a builder that asks for
+/// It has the capacity for particles of the saved one, because rows are numbered by it, and refuses a builder that asks for
 /// more: births would be lost.
 pub fn restore<R: Real>(
     mut builder: ModelBuilder,
@@ -86,7 +86,7 @@ pub fn restore<R: Real>(
 /// Bytes of a row in the columns that every checkpoint stores, at least.
 const ROW_BYTES: u64 = size_of::<[f64; 3]>() as u64;
 
-/// Gives each object of particles the room that it had. A damaged number must not take more memory than a checkpoint of so
+/// Gives each object of particles the capacity that it had. A damaged number must not take more memory than a checkpoint of so
 /// many bytes can fill.
 fn set_capacities(builder: &mut ModelBuilder, capacities: &[u64], bytes: usize) -> Result<(), RestoreError> {
     let mut objects: Vec<_> = builder.cloths.iter_mut().filter(|cloth| cloth.particles.is_some()).collect();
@@ -102,7 +102,7 @@ fn set_capacities(builder: &mut ModelBuilder, capacities: &[u64], bytes: usize) 
     {
         let wanted = std::mem::replace(&mut particles.capacity, found as usize) as u64;
         if wanted > found {
-            return Err(RestoreError::LittleRoom { found, wanted });
+            return Err(RestoreError::SmallerCapacity { found, wanted });
         }
     }
     Ok(())

@@ -33,7 +33,7 @@ pub enum ContactState {
     Free = 0,
     /// In contact at its thickness.
     Touching = 1,
-    /// In contact at less than nine tenths of its thickness, mostly because two bodies leave too little room.
+    /// In contact at less than nine tenths of its thickness, mostly because two bodies leave too little clearance.
     Compressed = 2,
     /// Inside a closed collider, in depenetration.
     Depenetrating = 3,

@@ -240,7 +240,7 @@ impl<R: Real> LastPositions for Solver<R> {
         self.model.cloths[cloth.index()].points().len()
     }
 
-    fn room(&self, cloth: ClothId) -> usize {
+    fn capacity(&self, cloth: ClothId) -> usize {
         let living = self.model.cloths[cloth.index()].points().len();
         self.state.population_of(cloth.index()).map_or(living, Population::capacity)
     }

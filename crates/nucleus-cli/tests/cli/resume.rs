@@ -179,7 +179,7 @@ fn a_run_that_is_continued_beyond_its_end_emits_as_a_longer_run_does() {
     emit(folder.path(), "selfCollide: false", 60, "whole.mcap");
     let output = resume(folder.path(), &["--to", "60"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("the checkpoint has room for 32 particles"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the checkpoint has a capacity of 32 particles"), "{}", stderr(&output));
     let whole = positions(folder.path(), "whole.mcap", 60);
     assert!(whole.len() > 140 && positions(folder.path(), "x.mcap", 60) == whole, "{}", whole.len());
     // Now there is room for some more frames.

@@ -33,7 +33,7 @@ impl BoxRow {
     pub fn fill<T>(&mut self, things: &[T], boxes: impl Fn(&T) -> SweptBox) {
         self.eights.clear();
         self.len = things.len();
-        // Most rows are one or two long, where a vector would begin with room for four.
+        // Most rows are one or two long, where a vector would begin with a capacity of four.
         self.eights.reserve_exact(things.len().div_ceil(8));
         self.eights.extend(things.chunks(8).map(|things| {
             let mut eight = [[Aabb::EMPTY; 2]; 8];

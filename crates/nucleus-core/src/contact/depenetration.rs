@@ -42,7 +42,7 @@ pub struct Obstacle {
     /// Its unit normal at the point.
     pub normal: Point,
     /// How far the point may go against the normal, in metres.
-    pub room: f64,
+    pub clearance: f64,
 }
 
 encode_struct!([] Depenetration { points: Vec<(u32, u32)>, suspects: Vec<u32>, has_begun: bool });
@@ -124,34 +124,34 @@ impl Depenetration {
         }
     }
 
-    /// Moves every point at least a step farther out, along its face's normal, as far as `room` allows, given the point and
+    /// Moves every point at least a step farther out, along its face's normal, as far as `clearance` allows, given the point and
     /// the normal, in metres. Along the face it is free.
     pub fn push_outward<R: Real>(
         &self,
         collider: &ColliderModel,
         step: &ColliderStep<'_, R>,
-        room: impl Fn(u32, &Point) -> f64,
+        clearance: impl Fn(u32, &Point) -> f64,
     ) {
         self.points.iter().for_each(|&(point, face)| {
-            push_outward(point, face, collider, step, |outward| room(point, outward));
+            push_outward(point, face, collider, step, |outward| clearance(point, outward));
         });
     }
 }
 
-/// Moves a point at least a step farther out, along the normal of its exit face, as far as `room` allows, given the normal.
+/// Moves a point at least a step farther out, along the normal of its exit face, as far as `clearance` allows, given the normal.
 pub fn push_outward<R: Real>(
     point: u32,
     face: u32,
     collider: &ColliderModel,
     step: &ColliderStep<'_, R>,
-    room: impl Fn(&Point) -> f64,
+    clearance: impl Fn(&Point) -> f64,
 ) {
     let [from, to] = step.collider_positions(collider.boundary.triangles[face as usize]);
     let outward = unit_normal(to);
     let before = unit_normal(from).dot(&(step.start_position(point) - from[0]));
     let now = outward.dot(&(step.end_position(point) - to[0]));
     let target = (before + DEPENETRATION_SPEED * step.h.to_f64()).min(step.thickness.to_f64());
-    let push = (target - now).min(room(&outward));
+    let push = (target - now).min(clearance(&outward));
     if push > 0.0 {
         step.push_point(point, outward * push, outward * push.min(target - before));
     }

@@ -12,10 +12,10 @@ use std::sync::atomic::AtomicBool;
 use nalgebra::Vector3;
 
 use crate::bytes::{checkpoint_struct, encode_struct};
+use crate::contact::clearance::NearSurface;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_filter::PairFilter;
 use crate::contact::response::{Adhesion, Push, Restitution, coulomb_correction};
-use crate::contact::room::NearSurface;
 use crate::contact::time_step::PositionWriter;
 use crate::input::frame::GroundPlane;
 use crate::math::{Real, Row4, add, dot, scale, sub};
@@ -270,7 +270,7 @@ impl<R: Real> GroundContact<'_, R> {
     }
 
     /// How far a point is above its thickness, in metres.
-    pub fn room(&self, point: u32) -> R {
+    pub fn clearance(&self, point: u32) -> R {
         self.plane.height_now(point, self.writer.row(point).xyz()) - self.thickness(point)
     }
 
@@ -325,7 +325,7 @@ impl<R: Real> GroundContact<'_, R> {
         let most = R::from_f64(self.material.thickness);
         self.material.thickness_at(self.material_maps, ([point], [], &([R::ONE], [])), most)
             * self.thickness_scale
-            * self.material_maps.room.share([point], [R::ONE])
+            * self.material_maps.clearance.share([point], [R::ONE])
     }
 
     fn push(&self, point: u32, mut row: Row4<R>, [thickness, gap]: [R; 2]) {

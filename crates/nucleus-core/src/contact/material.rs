@@ -1,10 +1,10 @@
 //! Contact materials: thickness, friction, stickiness, bounce, strength, layers and element types of a pair of
 //! objects in a frame; and vertex maps of them.
 
+use crate::contact::clearance::Clearance;
 use crate::contact::collider_maps::{ColliderFactors, ColliderMaps, max_factor};
 use crate::contact::kept_gaps::KeptGaps;
 use crate::contact::response::ADHESION_RANGE;
-use crate::contact::room::Room;
 use crate::input::frame::{ClothFrame, ColliderFrame, Elements, GroundPlane, ResistanceModel};
 use crate::input::particles::{ParticleRamp, RampTarget};
 use crate::math::Real;
@@ -323,8 +323,8 @@ pub struct MaterialMaps<R> {
     pub colliders: Vec<ColliderMaps>,
     /// Gaps to colliders that points keep from the start (Classic).
     pub kept_gaps: KeptGaps<R>,
-    /// The share of the thickness for which there is room between colliders, in a time step that had too little.
-    pub room: Room<R>,
+    /// The share of the thickness for which there is clearance between colliders, in a time step that had too little.
+    pub clearance: Clearance<R>,
 }
 
 impl<R: Real> MaterialMaps<R> {
@@ -373,7 +373,7 @@ impl<R: Real> MaterialMaps<R> {
             max_thickness_factor: cloths.iter().map(largest).collect(),
             colliders: colliders.iter().map(ColliderMaps::new).collect(),
             kept_gaps: KeptGaps::default(),
-            room: Room::default(),
+            clearance: Clearance::default(),
         }
     }
 }

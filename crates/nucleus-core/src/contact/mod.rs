@@ -51,7 +51,7 @@
 //! | contact among cloths, friction anchors, untangling | [`cloth`] |
 //! | the ground plane | [`ground`] |
 //! | gaps that points keep from the start (Classic) | [`kept_gaps`] |
-//! | room between surfaces that face each other | [`room`] |
+//! | clearance between surfaces that face each other | [`clearance`] |
 //! | points inside a collider | [`depenetration`] |
 //! | push-out of points near a surface | [`push_out`] |
 //! | the state of contact, and the inputs and outputs of its passes | [`system`] |
@@ -84,7 +84,7 @@
 //! | `rigid_impact::IMPACT_DURATION` | 1/24 s | a body that springs back within a film frame looks rigid |
 //! | `rigid_impact::ROUNDS` | 20 | impulses of a crate that lands on a face |
 //! | `response::MIN_MOBILITY` | 0.25 | beside a pin no point moves farther than 4 depths |
-//! | `room::FACING` | 0.5 | cosine: at a larger angle a point finds room beside the two surfaces |
+//! | `clearance::FACING` | 0.5 | cosine: at a larger angle a point finds clearance beside the two surfaces |
 //! | `response::TOUCH_TOLERANCE` | 1e-6 t | a contact at rest does not push at its last bit |
 //! | `cloth::broad_phase::CANDIDATE_INTERVAL`, `MIN_INTERVAL_STEPS` | 10 ms, 4 | a drape takes a seventh longer with twice the length |
 //! | `cloth::broad_phase::BOUND_RADIUS` | 0.4 t or 0.08 e | smaller: more searches; larger: more contacts |
@@ -103,6 +103,7 @@ pub mod boundary;
 pub mod box_row;
 pub mod bvh;
 pub mod ccd;
+pub mod clearance;
 pub mod closest_lanes;
 pub mod cloth;
 pub mod collider;
@@ -125,7 +126,6 @@ pub mod push_out;
 pub mod response;
 pub mod restitution;
 pub mod rigid_impact;
-pub mod room;
 pub mod safeguard;
 pub mod system;
 pub mod time_step;

@@ -59,7 +59,7 @@ pub struct Push<R> {
     /// The part that undoes the motion of this step: it changes velocity.
     pub pressed: R,
     /// The part that resolves a depth from before the step, slowly and without velocity. Cloth that starts too
-    /// close does not jump, and cloth between two bodies with too little room does not tremble.
+    /// close does not jump, and cloth between two bodies with too little clearance does not tremble.
     pub depenetration: R,
 }
 

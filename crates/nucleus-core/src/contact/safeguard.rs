@@ -1,9 +1,9 @@
 //! Penetration safeguard: certifies at the end of a time step that no pair passed through each other, else
 //! applies fallbacks in a fixed order.
 //!
-//! 1. Contacts push again, four times. Where surfaces that face each other leave too little room, each point keeps the share
+//! 1. Contacts push again, four times. Where surfaces that face each other leave too little clearance, each point keeps the share
 //!    of its thickness that fits.
-//! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little room for
+//! 2. Contacts push with a smaller and smaller share of their thickness: two bodies may leave too little clearance for
 //!    all of it.
 //! 3. Motion is truncated at a division plane between the two elements, or, at a collider or the ground, reverted to the start
 //!    of the step in its moving frame (planar divide and truncate).
@@ -26,7 +26,7 @@ use crate::contact::cloth::frozen::Frozen;
 use crate::contact::cloth::islands::{find_drift, grow_to_islands, keep_momentum};
 use crate::contact::cloth::pass::resolve_cloth_contacts;
 use crate::contact::collider::affine_motion::AffineMotion;
-use crate::contact::collider::facing::find_room;
+use crate::contact::collider::facing::find_clearance;
 use crate::contact::collider::free_points::apply_fallbacks_to_free_points;
 use crate::contact::collider::pass::{
     accept_unresolved_collider_contacts, certify_collider_contacts, resolve_collider_contacts,
@@ -41,7 +41,7 @@ use crate::output::{Stage, StepObserver};
 /// Certifies all pairs at the end of a time step, and applies the fallbacks.
 pub fn safeguard<R: Real>(pass: &mut ContactPass<'_, R>, watch: &mut dyn StepObserver) {
     certify_or_fall_back(pass, watch);
-    pass.contact.material_maps.room.clear();
+    pass.contact.material_maps.clearance.clear();
     if !pass.contact.drift.is_empty() {
         keep_momentum(pass);
         pass.contact.drift.clear();
@@ -115,7 +115,7 @@ fn fall_back<R: Real>(
             }
             mask_islands(pass.contact, |[among_cloths, with_colliders]| among_cloths || with_colliders);
             if attempt.is_first() && unproven.with_obstacles > 0 {
-                find_room(pass);
+                find_clearance(pass);
             }
             resolve_collider_contacts(pass, attempt.thickness_scale, watch);
             pass.contact.contact_mask.clear();

@@ -185,7 +185,7 @@ pub struct ColliderStep<'a, R> {
     pub h: R,
     /// Contact thickness in metres: the largest value under the vertex maps.
     pub thickness: R,
-    /// Factor on every thickness: below one where there is too little room.
+    /// Factor on every thickness: below one where there is too little clearance.
     pub thickness_scale: R,
     /// The contact material of the two.
     pub material: ContactMaterial<R>,
@@ -193,7 +193,7 @@ pub struct ColliderStep<'a, R> {
     pub material_maps: &'a MaterialMaps<R>,
     /// Those of the collider, if it has any.
     pub collider_maps: Option<&'a ColliderMaps>,
-    /// Whether the points are free: a plane along the way of one then certifies that it misses a face.
+    /// Whether the points are free: a plane along the path of one then certifies that it misses a face.
     pub of_free_points: bool,
 }
 
@@ -219,14 +219,14 @@ impl<R: Real> ColliderStep<'_, R> {
     ) -> R {
         let maps = self.material_maps;
         let has_maps = !maps.thickness.is_empty() || self.collider_maps.is_some();
-        if !has_maps && maps.kept_gaps.is_empty() && maps.room.is_ample() {
+        if !has_maps && maps.kept_gaps.is_empty() && maps.clearance.is_full() {
             return self.thickness;
         }
         let most = R::from_f64(self.material.thickness);
         let thickness = material.mapped_thickness(maps, (points, [], &(weights, [])), most);
         maps.kept_gaps.at(points, weights, thickness)
             * self.thickness_scale
-            * maps.room.share(points, weights)
+            * maps.clearance.share(points, weights)
     }
 
     /// Whether collisions with this collider are carried out in part: cloth may then pass through it.

@@ -126,7 +126,7 @@ impl Default for FrameInput {
 /// A particle that is born in a frame. Until the end of its substep it flies freely.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Birth {
-    /// The object, which has room for particles.
+    /// The object, which has capacity for particles.
     pub cloth: ClothId,
     /// Time of birth as a share of the frame, 0 to 1.
     pub time: f64,

@@ -202,7 +202,7 @@ pub struct CollisionEvent {
     pub die: bool,
     /// Angle about the direction of the rebound within which new particles fly, as a share of 90°.
     pub spread: f64,
-    /// The object of the emitted particles, which has room for particles; those of a split stay in their own.
+    /// The object of the emitted particles, which has capacity for particles; those of a split stay in their own.
     pub target: ClothId,
     /// Age in seconds at which emitted particles die, in the mean, and the width of its range.
     pub lifespan: [f64; 2],

@@ -161,7 +161,7 @@ pub fn update_normals<R: Real>(
     };
     let normals = DisjointSlice::new(normal);
     for cloth in cloths.iter().filter(|cloth| !cloth.triangles.is_empty()) {
-        // Particles have room for more blocks than there are.
+        // Particles have a capacity of more blocks than are in use.
         pool.parallel_for(cloth.blocks.len(), |block| {
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]

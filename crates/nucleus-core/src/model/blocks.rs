@@ -16,7 +16,7 @@ pub struct Blocks {
     /// Points in use, and the blocks that they are cut into.
     points: u32,
     count: u32,
-    /// Points that there is room for, and the blocks of as many.
+    /// Points of the capacity, and the blocks of as many.
     capacity: u32,
     max_count: u32,
 }
@@ -28,7 +28,7 @@ impl Blocks {
         Self { first, points, count, capacity: points, max_count: count }
     }
 
-    /// With all points that there is room for.
+    /// With all points of the capacity.
     fn filled(self) -> Self {
         Self { points: self.capacity, count: self.max_count, ..self }
     }
@@ -39,7 +39,7 @@ impl Blocks {
         (self.points, self.count) = (points as u32, block_count(points));
     }
 
-    /// The rows of all points that there is room for.
+    /// The rows of all points of the capacity.
     pub fn rows(&self) -> Range<u32> {
         self.first..self.first + self.capacity
     }
@@ -73,7 +73,7 @@ impl Blocks {
         self.first + self.capacity + block as u32
     }
 
-    /// The number of rows: one per point that there is room for, and the padding points.
+    /// The number of rows: one per point of the capacity, and the padding points.
     pub fn row_count(&self) -> u32 {
         self.capacity + self.max_count + 1
     }
@@ -121,7 +121,7 @@ pub struct AllBlocks {
 }
 
 impl AllBlocks {
-    /// The blocks of these cloths with all points that there is room for, counted through: particles that are not born yet
+    /// The blocks of these cloths with all points of the capacity, counted through: particles that are not born yet
     /// can have rows too.
     pub fn new(cloths: impl Iterator<Item = Blocks>) -> Self {
         let cloths: Vec<Blocks> = cloths.map(Blocks::filled).collect();

@@ -73,20 +73,20 @@ pub enum BuildError {
     /// Particles that are born and die have faces, or a lifespan that is negative or NaN.
     #[error("particles that are born and die have no faces, and lifespans of at least 0 s")]
     BadParticles,
-    /// More particles at the start than there is room for, or room for none.
-    #[error("there are {points} particles at the start, and room for {capacity}")]
+    /// More particles at the start than the capacity, or no capacity.
+    #[error("there are {points} particles at the start, and a capacity of {capacity}")]
     Capacity {
         /// The number of particles at the start.
         points: usize,
-        /// The room for particles.
+        /// The capacity in particles.
         capacity: usize,
     },
-    /// More room for particles than there can be.
-    #[error("there is room for {capacity} particles; an object has {most} at most")]
+    /// A larger capacity for particles than there can be.
+    #[error("the capacity is {capacity} particles; an object has {most} at most")]
     TooManyParticles {
-        /// The room for particles.
+        /// The capacity in particles.
         capacity: usize,
-        /// The largest room.
+        /// The largest capacity.
         most: usize,
     },
     /// The solver has as many cloths as it can tell pairs of apart.

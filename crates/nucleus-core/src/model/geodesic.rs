@@ -46,7 +46,7 @@ struct Spread {
     touched: Vec<u32>,
 }
 
-/// A label on its way: its distance as ordered bits, the point, the group and the pin.
+/// A label on its path: its distance as ordered bits, the point, the group and the pin.
 type Arriving = Reverse<(u64, u32, u32, u32)>;
 
 impl RestDistances {
@@ -105,8 +105,8 @@ impl RestDistances {
     /// For each point, a point towards its nearest pin at a distance of about `radius`, and the distance along the mesh to
     /// it, in metres; `None` for pins and for points that are nearer to a pin.
     ///
-    /// Labels spread from the point in a narrow strip round the shortest way to the pin. Of those that arrive at `radius`,
-    /// the one with the shortest way to the pin counts.
+    /// Labels spread from the point in a narrow strip round the shortest path to the pin. Of those that arrive at `radius`,
+    /// the one with the shortest path to the pin counts.
     pub fn towards_pins(&self, labels: &[Vec<Label>], radius: f64) -> Vec<Option<(u32, f64)>> {
         let mut spread_from = Spread { found: vec![Vec::new(); labels.len()], touched: Vec::new() };
         let from_pin =
@@ -143,9 +143,9 @@ impl RestDistances {
             }
             found[at as usize].push(label);
             touched.push(at);
-            let way = label.distance + from_pin(at);
-            if label.distance >= radius && best.is_none_or(|(least, ..)| way < least) {
-                best = Some((way, at, label.distance));
+            let path = label.distance + from_pin(at);
+            if label.distance >= radius && best.is_none_or(|(least, ..)| path < least) {
+                best = Some((path, at, label.distance));
             }
             for (next, distance) in self.corners[at as usize].iter().flat_map(|c| spread(c, &label, found)) {
                 if distance + from_pin(next) < own + longest / 2.0 {

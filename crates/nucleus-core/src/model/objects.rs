@@ -127,7 +127,7 @@ pub struct Cloth {
     pub vertex_maps: VertexMaps,
     /// Positions and velocities at the start, where they differ from the mesh at rest.
     pub start: Start,
-    /// Room for particles that are born and die; only without faces.
+    /// Capacity for particles that are born and die; only without faces.
     pub particles: Option<Particles>,
     /// Of each of the last points, the point that it was split off, so that the mesh can tear between the two. For the air
     /// inside, a mesh is whole until it tears.
@@ -155,7 +155,7 @@ pub struct Particles {
     pub rotates: bool,
 }
 
-/// Without the room, which says how far a run goes and nothing about its objects.
+/// Without the capacity, which says how far a run goes and nothing about its objects.
 impl fmt::Debug for Particles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { capacity: _, lifespans, ages, ids, radius, ramps, events, rotates } = self;

@@ -45,13 +45,13 @@ pub fn check_start(start: &Start, points: usize) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Largest room for the particles of one object: rows are counted in 32 bits.
+/// Largest capacity for the particles of one object: rows are counted in 32 bits.
 const MAX_PARTICLES: usize = 100_000_000;
 
 /// Least length of the longest edge of a mesh in metres. Squares of shorter ones are nothing in `f32`.
 const MIN_EDGE: f64 = 1e-9;
 
-/// Refuses particles with faces, more of them than there is room for, lifespans that are no times, and events whose numbers
+/// Refuses particles with faces, more of them than the capacity, lifespans that are no times, and events whose numbers
 /// are out of range.
 pub fn check_particles(surface: &Surface, particles: &Particles) -> Result<(), BuildError> {
     let (points, capacity) = (surface.positions.len(), particles.capacity);

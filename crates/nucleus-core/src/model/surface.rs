@@ -22,7 +22,7 @@ impl Default for Faces {
 }
 
 impl Faces {
-    /// No faces, with room for `faces` faces of `corners` corners in all.
+    /// No faces, with capacity for `faces` faces of `corners` corners in all.
     pub fn with_capacity(faces: usize, corners: usize) -> Self {
         let mut starts = Vec::with_capacity(faces + 1);
         starts.push(0);

@@ -56,7 +56,7 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
     let mut states = std::mem::take(&mut solver.contact.row_states);
     contact_states_of_rows(&solver.model, &solver.state, &solver.contact, &mut states);
     let mut populations = std::mem::take(&mut solver.state.populations);
-    let mut room = Room::of(&populations, solver.model.cloths.len());
+    let mut capacity = RemainingCapacity::of(&populations, solver.model.cloths.len());
     for population in populations.iter_mut().filter(|population| !population.events().is_empty()) {
         let first = solver.model.cloths[population.cloth()].blocks.rows().start;
         for at in 0..population.len() {
@@ -65,7 +65,7 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
             let Some(collision) = population.notice(at, touches) else { continue };
             let place = Vector3::from(solver.state.position(row));
             let velocity = Vector3::from(solver.state.velocity[row as usize].xyz().map(R::to_f64));
-            happen(population, at, collision, [place, velocity], &mut room);
+            happen(population, at, collision, [place, velocity], &mut capacity);
         }
     }
     solver.state.populations = populations;
@@ -74,24 +74,24 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
 
 /// How many new particles each object can take up at the end of the substep, by the index of its cloth. None are made
 /// beyond that: an event may ask for billions.
-struct Room(Vec<usize>);
+struct RemainingCapacity(Vec<usize>);
 
-impl Room {
-    /// The room that the events of the substep so far leave. All particles that live now may die before.
+impl RemainingCapacity {
+    /// The capacity that the events of the substep so far leave. All particles that live now may die before.
     fn of(populations: &[Population], cloths: usize) -> Self {
-        let mut room = vec![0; cloths];
-        populations.iter().for_each(|population| room[population.cloth()] = population.capacity());
+        let mut capacity = vec![0; cloths];
+        populations.iter().for_each(|population| capacity[population.cloth()] = population.capacity());
         for spawn in populations.iter().flat_map(|population| &population.spawned) {
-            room[spawn.cloth] = room[spawn.cloth].saturating_sub(1);
+            capacity[spawn.cloth] = capacity[spawn.cloth].saturating_sub(1);
         }
-        Self(room)
+        Self(capacity)
     }
 
     /// How many of so many new particles an object can take up; none where it is no object of particles.
     fn take(&mut self, cloth: usize, wanted: u64) -> u64 {
-        let Some(room) = self.0.get_mut(cloth) else { return 0 };
-        let taken = wanted.min(*room as u64);
-        *room -= taken as usize;
+        let Some(capacity) = self.0.get_mut(cloth) else { return 0 };
+        let taken = wanted.min(*capacity as u64);
+        *capacity -= taken as usize;
         taken
     }
 }
@@ -102,7 +102,7 @@ fn happen(
     at: usize,
     collision: u32,
     [place, velocity]: [Vector3<f64>; 2],
-    room: &mut Room,
+    capacity: &mut RemainingCapacity,
 ) {
     let own = population.cloth();
     let facts = population.facts(at, 0.0);
@@ -117,7 +117,7 @@ fn happen(
         let emitted = u64::from(draws.count(event.emit, event.random));
         let parts = u64::from(draws.count(event.split, event.random)).saturating_sub(1);
         for (cloth, wanted, whole) in [(event.target.index(), emitted, None), (own, parts, Some(facts))] {
-            let made = room.take(cloth, wanted);
+            let made = capacity.take(cloth, wanted);
             for _ in 0..made {
                 let direction = draws.about(velocity, event.spread);
                 let drawn = (event.lifespan[0] + event.lifespan[1] * (draws.next() - 0.5)).max(0.0);

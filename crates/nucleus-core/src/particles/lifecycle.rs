@@ -13,9 +13,9 @@ use crate::input::validation::is_in_range;
 use crate::input::{ClothId, PointId};
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
-use crate::particles::first_way::Obstacles;
+use crate::particles::birth_path::Obstacles;
+use crate::particles::occupancy::OccupancyGrid;
 use crate::particles::population::{Newborn, Population, Spawn, close_up};
-use crate::particles::pruning::Crowd;
 use crate::particles::ramps::apply_ramps;
 use crate::schedule::Schedule;
 use crate::solver::Solver;
@@ -154,34 +154,34 @@ fn add_births<R: Real>(
         (birth, age, flight.after(birth, age))
     });
     let flights: Vec<_> = flights.collect();
-    let ways = flights.iter().map(|(birth, _, (position, _))| [birth.position, *position]);
-    let ways = ways.filter(|way| way.iter().all(is_in_range));
+    let paths = flights.iter().map(|(birth, _, (position, _))| [birth.position, *position]);
+    let paths = paths.filter(|path| path.iter().all(is_in_range));
     let living = object.points().map(|row| state.position(row).into());
-    let mut crowd = Crowd::of(&frame.cloths[cloth], living, corners(ways.clone().flatten()));
-    let obstacles = Obstacles::new((&*model, &*state, contact), cloth, ways, [end, frame.duration]);
+    let mut occupancy = OccupancyGrid::of(&frame.cloths[cloth], living, corners(paths.clone().flatten()));
+    let obstacles = Obstacles::new((&*model, &*state, contact), cloth, paths, [end, frame.duration]);
     for (birth, age, (mut position, mut velocity)) in flights {
         let population = &mut state.populations[index];
         let row = row_of + population.len() as u32;
-        let way = [birth.position, position];
-        let stop = || obstacles.stop((&*model, &*contact), row, way, birth.time);
+        let path = [birth.position, position];
+        let stop = || obstacles.stop((&*model, &*contact), row, path, birth.time);
         if let Some(place) = (!population.is_full()).then(stop).flatten() {
             (position, velocity) = (place, birth.velocity);
         }
-        let is_crowded = crowd.as_ref().is_some_and(|crowd| crowd.refuses(position));
+        let is_refused = occupancy.as_ref().is_some_and(|occupancy| occupancy.refuses(position));
         let is_valid = is_in_range(&position) && is_in_range(&velocity) && !age.is_nan();
-        if population.is_full() || !is_valid || is_crowded {
+        if population.is_full() || !is_valid || is_refused {
             counters.births_refused += 1;
             continue;
         }
-        if crowd.as_ref().is_some_and(|crowd| crowd.prunes(position)) {
+        if occupancy.as_ref().is_some_and(|occupancy| occupancy.prunes(position)) {
             continue;
         }
         counters.births += 1;
         let (lifespan, launched) = (birth.lifespan, velocity.into());
         match population.add(Newborn { age, lifespan, velocity: launched, touches: false }) {
             true => {
-                if let Some(crowd) = &mut crowd {
-                    crowd.add(position);
+                if let Some(occupancy) = &mut occupancy {
+                    occupancy.add(position);
                 }
                 let row = row_of + population.len() as u32 - 1;
                 set_row(state, row as usize, position, velocity, mass);
@@ -335,19 +335,19 @@ impl Flight {
     /// Position and velocity at an age within the substep.
     ///
     /// A time step of length h takes the velocity u through the air to f (u + h g), and moves by h times that. After n steps
-    /// u = U + (u0 - U) f^n with U = h g f / (1 - f), and the way is h (n U + (u0 - U) f (1 - f^n) / (1 - f)). A new particle
+    /// u = U + (u0 - U) f^n with U = h g f / (1 - f), and the travel is h (n U + (u0 - U) f (1 - f^n) / (1 - f)). A new particle
     /// takes age / h for n, so that its path is the same whenever in a step it is born.
     fn after(&self, birth: &Birth, age: f64) -> (Vector3<f64>, Vector3<f64>) {
         let Self { acceleration, wind, remaining: f, h } = *self;
         if f > 1.0 - MIN_DRAG {
             let velocity = birth.velocity + acceleration * age;
-            let way = birth.velocity * age + acceleration * (age * (age + h) / 2.0);
-            return (birth.position + way, velocity);
+            let travel = birth.velocity * age + acceleration * (age * (age + h) / 2.0);
+            return (birth.position + travel, velocity);
         }
         let (steps, last) = (age / h, acceleration * (h * f / (1.0 - f)));
         let share = libm::pow(f, steps);
         let apart = birth.velocity - wind - last;
-        let way = (last * steps + apart * (f * (1.0 - share) / (1.0 - f))) * h;
-        (birth.position + wind * age + way, wind + last + apart * share)
+        let travel = (last * steps + apart * (f * (1.0 - share) / (1.0 - f))) * h;
+        (birth.position + wind * age + travel, wind + last + apart * share)
     }
 }

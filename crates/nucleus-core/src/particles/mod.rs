@@ -1,6 +1,6 @@
 //! Particles that are born and die, and time steps of free points.
 //!
-//! An object of particles has room for a fixed number of them. Living particles are the first rows of the object, in the
+//! An object of particles has capacity for a fixed number of them. Living particles are the first rows of the object, in the
 //! order of their birth, and only these rows are swept, so a row without a particle costs nothing. Particles that are near
 //! in time of birth are near in space, so neighbouring rows stay near each other, which contact relies on: this is why the
 //! rows of dead particles are closed up in order, and not filled from the end or kept in a free list.
@@ -12,24 +12,24 @@
 //! |---|---|
 //! | ages, lifespans and numbers | [`population`] |
 //! | births and deaths in the solver's columns | [`lifecycle`] |
-//! | new particles that a surface would be in the way of | [`first_way`] |
+//! | new particles that a surface would be in the way of | [`birth_path`] |
 //! | time steps of particles that depend on nothing but colliders | [`free`], [`free_pass`], then [`free_run`] |
 //! | attributes that differ by particle | [`ramps`] |
 //! | what an observer draws of them | [`looks`] |
 //! | what happens at collisions | [`events`] |
 //! | `computeRotation` | [`rotation`] |
 //! | `conserve` and `damp` | [`slowing`] |
-//! | new particles that would overlap others | [`pruning`] |
+//! | new particles that would overlap others | [`occupancy`] |
 
+pub mod birth_path;
 pub mod events;
-pub mod first_way;
 pub mod free;
 pub mod free_pass;
 pub mod free_run;
 pub mod lifecycle;
 pub mod looks;
+pub mod occupancy;
 pub mod population;
-pub mod pruning;
 pub mod ramps;
 pub mod rotation;
 pub mod slowing;

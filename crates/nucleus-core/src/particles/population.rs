@@ -77,7 +77,7 @@ pub struct Population {
     collisions: Vec<u32>,
     /// What its collisions in this substep add.
     pub(super) spawned: Vec<Spawn>,
-    /// How many more they would have added if there were room.
+    /// How many more they would have added if the capacity allowed it.
     pub(super) spawns_refused: u64,
     /// Factors by particle on the point field, the viscosity and the surface tension; empty without a ramp.
     field_factors: Vec<f32>,
@@ -191,7 +191,7 @@ impl Population {
         self.capacity
     }
 
-    /// Whether there is room for no more.
+    /// Whether it is full.
     pub fn is_full(&self) -> bool {
         self.len() >= self.capacity
     }

@@ -288,7 +288,7 @@ fn a_checkpoint_keeps_the_room_that_it_had() {
     let saved = solver.save();
     // A scene that has become longer may ask for more: births beyond the room would be lost.
     let longer = Solver::<f32>::restored(model(256), 1, &saved).map(|_| ());
-    assert_eq!(longer, Err(RestoreError::LittleRoom { found: 64, wanted: 256 }));
+    assert_eq!(longer, Err(RestoreError::SmallerCapacity { found: 64, wanted: 256 }));
     let mut again = Solver::<f32>::restored(model(32), 1, &saved).expect("the same objects");
     for number in 4..8 {
         solver.step(&input(number), &mut ());

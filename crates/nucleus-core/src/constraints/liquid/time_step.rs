@@ -142,10 +142,10 @@ impl<R: Real> LiquidMotion<'_, R> {
             let material = ContactMaterial::<R>::for_cloths(pair, [1.0; 2], frame.layer_range)?;
             let ([low, high], mean) = *own.get_or_init(|| (self.bounds(cloth), self.mean_velocity()));
             let speed = self.largest_speed(other, mean);
-            let room = material.thickness + f64::from(REACH) * settings.spacing + speed * seconds;
+            let margin = material.thickness + f64::from(REACH) * settings.spacing + speed * seconds;
             let [from, to] = self.bounds(other);
             (0..3)
-                .all(|axis| low[axis] - room <= to[axis] && from[axis] <= high[axis] + room)
+                .all(|axis| low[axis] - margin <= to[axis] && from[axis] <= high[axis] + margin)
                 .then_some(speed)
         };
         (0..model.cloths.len()).filter(|other| *other != cloth).filter_map(speed_if_near).fold(0.0, f64::max)

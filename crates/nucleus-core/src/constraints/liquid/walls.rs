@@ -7,7 +7,7 @@
 //! weight S of a sheet of liquid, so that a flat surface weighs as much as the plane. Contact thickness moves both outwards.
 //!
 //! The samples of cloth move with the corners of their triangle, and take up the pressure on them: momentum is kept. A
-//! particle of another object is a sample that weighs as a ball of liquid, so that two liquids share the room, and the heavier
+//! particle of another object is a sample that weighs as a ball of liquid, so that two liquids share the volume, and the heavier
 //! one sinks.
 
 use std::f32::consts::PI;

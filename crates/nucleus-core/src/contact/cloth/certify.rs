@@ -105,11 +105,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
     /// of the step. The remaining height exceeds rounding error.
     fn truncate_point(&self, step: &ClothStep<'_, R>, point: u32, [before, now]: [R; 2], rounding_error: R) {
         let mut row = step.row(point);
-        let room = max(before * R::from_f64(1.0 - MAX_PLANE_APPROACH), rounding_error);
-        if now >= room || before - now <= R::MIN_DENOMINATOR || row.0[3] <= R::ZERO {
+        let clearance = max(before * R::from_f64(1.0 - MAX_PLANE_APPROACH), rounding_error);
+        if now >= clearance || before - now <= R::MIN_DENOMINATOR || row.0[3] <= R::ZERO {
             return;
         }
-        let share = max((before - room) / (before - now), R::ZERO);
+        let share = max((before - clearance) / (before - now), R::ZERO);
         let start = add(step.start(point), self.drift(step));
         for axis in 0..3 {
             row.0[axis] = start[axis] + (row.0[axis] - start[axis]) * share;

@@ -36,7 +36,7 @@ pub struct ClothStep<'a, R> {
     pub material_maps: &'a MaterialMaps<R>,
     /// Length of the step in seconds.
     pub h: R,
-    /// Factor on every thickness: below one where there is too little room.
+    /// Factor on every thickness: below one where there is too little clearance.
     pub thickness_scale: R,
     /// By cloth: the mean motion of its island in the step, in metres, to which motion is truncated instead of to rest.
     pub drift: &'a [Option<[R; 3]>],

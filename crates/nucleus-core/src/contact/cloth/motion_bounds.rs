@@ -126,7 +126,7 @@ impl<R: Real> BoundPredictor<R> {
         Self { step_start: R::from_f64((now.from - interval[0]) / length), steps: R::from_f64(length / step) }
     }
 
-    /// Extrapolates the line by this step's motion, and at `rate` per step after it. The radius has room for this step.
+    /// Extrapolates the line by this step's motion, and at `rate` per step after it. The radius has a margin for this step.
     #[inline(always)]
     pub fn extrapolate(&self, before: [R; 3], [motion, rate]: [[R; 3]; 2], radius: R) -> Trajectory<R> {
         let left = self.steps * (R::ONE - self.step_start);

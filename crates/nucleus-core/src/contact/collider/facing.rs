@@ -1,19 +1,19 @@
 //! Surfaces that face each other with cloth between them: of two colliders, of one that folds, or of one and the ground.
 
+use crate::contact::clearance::NearSurface;
 use crate::contact::collider::contact::ColliderContact;
 use crate::contact::collider::lists::for_contacts_of;
 use crate::contact::contact_state::MIN_WEIGHT;
 use crate::contact::ground::pass::for_ground_contacts;
-use crate::contact::room::NearSurface;
 use crate::contact::system::ContactPass;
 use crate::contact::time_step::ColliderStep;
 use crate::math::Real;
 
-/// Finds the room that the points of the cloths of a pass have between colliders and the ground, by their active contacts.
-pub fn find_room<R: Real>(pass: &mut ContactPass<'_, R>) {
-    let mut room = std::mem::take(&mut pass.contact.material_maps.room);
-    room.find(pass.state.anchor.len(), |near| list_surfaces(pass, near));
-    pass.contact.material_maps.room = room;
+/// Finds the clearance that the points of the cloths of a pass have between colliders and the ground, by their active contacts.
+pub fn find_clearance<R: Real>(pass: &mut ContactPass<'_, R>) {
+    let mut clearance = std::mem::take(&mut pass.contact.material_maps.clearance);
+    clearance.find(pass.state.anchor.len(), |near| list_surfaces(pass, near));
+    pass.contact.material_maps.clearance = clearance;
 }
 
 fn list_surfaces<R: Real>(pass: &mut ContactPass<'_, R>, near: &mut Vec<NearSurface<R>>) {

@@ -122,9 +122,9 @@ fn can_touch_in_frame<R: Real>(
     let squares = model.points().map(|row| state.velocity[row as usize].xyz());
     let speed = squares.map(|v| dot(v, v).to_f64()).fold(0.0, f64::max).sqrt();
     let flight = (speed + frame.gravity.norm() * frame.duration) * frame.duration;
-    let room = material.thickness * material.adhesion_range + flight + MAX_TRAVEL * model.edge_length;
+    let margin = material.thickness * material.adhesion_range + flight + MAX_TRAVEL * model.edge_length;
     let cloth_box = bounding_box(model.points().map(|row| state.position(row)));
-    overlaps(cloth_box, room, contact.collider_states[collider].swept_bounds())
+    overlaps(cloth_box, margin, contact.collider_states[collider].swept_bounds())
 }
 
 /// Makes colliders near whose swept box overlaps the window bounds of a cloth. Returns whether there were any: all
@@ -154,8 +154,8 @@ pub fn find_approaching_colliders<R: Real>(
         let ColliderContacts { collider, is_near, .. } = contact.collider_contacts[index];
         let material = contact.collider_materials_of(cloth)[collider].filter(|_| !is_near);
         let Some(material) = material else { continue };
-        let room = material.thickness * material.adhesion_range;
-        if overlaps(cloth_box, room, contact.collider_states[collider].swept_bounds()) {
+        let margin = material.thickness * material.adhesion_range;
+        if overlaps(cloth_box, margin, contact.collider_states[collider].swept_bounds()) {
             contact.collider_contacts[index].is_near = true;
             any = true;
         }
@@ -204,7 +204,7 @@ fn bounding_box(positions: impl Iterator<Item = [f64; 3]>) -> [Vector3<f64>; 2] 
         .fold(empty, |[low, high], position| [low.inf(&position), high.sup(&position)])
 }
 
-/// Whether a box, inflated by `room`, overlaps another.
-fn overlaps(ours: [Vector3<f64>; 2], room: f64, theirs: [Vector3<f64>; 2]) -> bool {
-    (0..3).all(|k| ours[0][k] - room <= theirs[1][k] && theirs[0][k] <= ours[1][k] + room)
+/// Whether a box, inflated by `margin`, overlaps another.
+fn overlaps(ours: [Vector3<f64>; 2], margin: f64, theirs: [Vector3<f64>; 2]) -> bool {
+    (0..3).all(|k| ours[0][k] - margin <= theirs[1][k] && theirs[0][k] <= ours[1][k] + margin)
 }

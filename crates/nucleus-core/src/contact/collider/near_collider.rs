@@ -113,10 +113,10 @@ impl<'a, R: Real> NearCollider<'a, R> {
         });
     }
 
-    /// Whether a way comes within `reach` of the box of a face, in the frame of the fitted boxes (separating axes across the
-    /// way: Ericson 2005, §5.3.3). Without fitted boxes every face is one.
+    /// Whether a path comes within `reach` of the box of a face, in the frame of the fitted boxes (separating axes across the
+    /// path: Ericson 2005, §5.3.3). Without fitted boxes every face is one.
     #[inline]
-    pub fn comes_near(&self, way: &[Vector3<f64>; 2], face: u32, reach: f64) -> bool {
+    pub fn comes_near(&self, path: &[Vector3<f64>; 2], face: u32, reach: f64) -> bool {
         if !self.is_fitted {
             return true;
         }
@@ -124,9 +124,9 @@ impl<'a, R: Real> NearCollider<'a, R> {
         let (mut apart, mut half, mut along) = ([0.0; 3], [0.0; 3], [0.0; 3]);
         for axis in 0..3 {
             let [low, high] = [low, high].map(|corner| f64::from(corner[axis]));
-            apart[axis] = way[0][axis] + way[1][axis] - low - high;
+            apart[axis] = path[0][axis] + path[1][axis] - low - high;
             half[axis] = high - low + 2.0 * reach;
-            along[axis] = way[1][axis] - way[0][axis];
+            along[axis] = path[1][axis] - path[0][axis];
         }
         [(0, 1), (1, 2), (2, 0)].into_iter().all(|(a, b)| {
             let across = apart[a] * along[b] - apart[b] * along[a];
@@ -134,8 +134,8 @@ impl<'a, R: Real> NearCollider<'a, R> {
         })
     }
 
-    /// A way in this step in the frame of the fitted boxes.
-    pub fn way_among_boxes(&self, ends: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
+    /// A path in this step in the frame of the fitted boxes.
+    pub fn path_among_boxes(&self, ends: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
         let [from, to] = self.args.time.map(|time| self.state.origin(time));
         [ends[0] - from, ends[1] - to]
     }

@@ -16,7 +16,7 @@ const FAR: f64 = 2.0;
 
 /// The motion of a point in a time step.
 #[derive(Debug, Clone, Copy)]
-pub struct Way {
+pub struct PointPath {
     /// Its ends in metres.
     pub ends: [Point; 2],
     /// Interaction range in metres.
@@ -27,8 +27,8 @@ pub struct Way {
     pub start_gap: f64,
 }
 
-impl Way {
-    /// A way on which no adhesion acts, so that the start of the step may be as near as it likes.
+impl PointPath {
+    /// A path on which no adhesion acts, so that the start of the step may be as near as it likes.
     pub fn new(ends: [Point; 2], range: f64, margin: f64) -> Self {
         Self { ends, range, margin, start_gap: CLEAR_GAP }
     }
@@ -39,7 +39,7 @@ impl Way {
     }
 }
 
-/// How a way stands to a face.
+/// How a path stands to a face.
 #[derive(Debug, Clone, Copy)]
 pub enum Facing {
     /// A plane excludes contact.
@@ -48,28 +48,28 @@ pub enum Facing {
     Close(Point, [f64; 3]),
     /// A plane with this normal keeps them apart; at the end the two may touch.
     Near(Point),
-    /// The point passes the face, which has this normal towards its start, at this share of the way.
+    /// The point passes the face, which has this normal towards its start, at this share of the path.
     Passes(Point, f64),
 }
 
-/// How a way stands to a face with these corners at its start and at its end, and the height of the start above the face in
+/// How a path stands to a face with these corners at its start and at its end, and the height of the start above the face in
 /// metres, below zero behind it.
-pub fn facing(way: &Way, faces: [[Point; 3]; 2]) -> (Facing, f64) {
+pub fn facing(path: &PointPath, faces: [[Point; 3]; 2]) -> (Facing, f64) {
     let [[a, b, c], to] = faces;
     let across = (b - a).cross(&(c - a));
     let length = across.norm().max(f64::MIN_POSITIVE);
-    let height = across.dot(&(way.ends[0] - a)) / length;
+    let height = across.dot(&(path.ends[0] - a)) / length;
     let ahead = across * (height.signum() / length);
-    let at_end = gap(ahead, way.ends[1], to);
-    if at_end > way.range + way.margin && height.abs() > way.start_gap {
+    let at_end = gap(ahead, path.ends[1], to);
+    if at_end > path.range + path.margin && height.abs() > path.start_gap {
         return (Facing::Apart, height);
     }
-    let aside = plane_along(way.ends, faces, 0.0);
-    if aside.is_some_and(|aside| way.is_apart(aside, faces)) || is_apart_at_end(way, faces) {
+    let aside = plane_along(path.ends, faces, 0.0);
+    if aside.is_some_and(|aside| path.is_apart(aside, faces)) || is_apart_at_end(path, faces) {
         return (Facing::Apart, height);
     }
     let facing = match aside {
-        _ if height.abs() <= FAR * way.range => facing_close(way, faces, across),
+        _ if height.abs() <= FAR * path.range => facing_close(path, faces, across),
         _ if at_end >= 0.0 => Facing::Near(ahead),
         Some(aside) => Facing::Near(aside),
         None => Facing::Passes(ahead, height.abs() / (height.abs() - at_end)),
@@ -78,20 +78,20 @@ pub fn facing(way: &Way, faces: [[Point; 3]; 2]) -> (Facing, f64) {
 }
 
 /// The same for a start near the plane of the face, if no other plane excludes contact.
-fn facing_close(way: &Way, [from, to]: [[Point; 3]; 2], across: Point) -> Facing {
-    let (line, weights) = shortest_line(way.ends[0], from);
+fn facing_close(path: &PointPath, [from, to]: [[Point; 3]; 2], across: Point) -> Facing {
+    let (line, weights) = shortest_line(path.ends[0], from);
     let touching = || across.try_normalize(0.0).unwrap_or_else(Point::y);
     let normal = line.try_normalize(1e-12).unwrap_or_else(touching);
-    if way.is_apart(normal, [from, to]) { Facing::Apart } else { Facing::Close(normal, weights) }
+    if path.is_apart(normal, [from, to]) { Facing::Apart } else { Facing::Close(normal, weights) }
 }
 
-/// Whether the plane across the shortest line at the end of a way excludes contact.
-fn is_apart_at_end(way: &Way, faces: [[Point; 3]; 2]) -> bool {
-    let normal = shortest_line(way.ends[1], faces[1]).0.try_normalize(f64::MIN_POSITIVE);
-    normal.is_some_and(|normal| way.is_apart(normal, faces))
+/// Whether the plane across the shortest line at the end of a path excludes contact.
+fn is_apart_at_end(path: &PointPath, faces: [[Point; 3]; 2]) -> bool {
+    let normal = shortest_line(path.ends[1], faces[1]).0.try_normalize(f64::MIN_POSITIVE);
+    normal.is_some_and(|normal| path.is_apart(normal, faces))
 }
 
-impl Way {
+impl PointPath {
     /// Whether a plane with this normal excludes contact.
     #[inline(always)]
     fn is_apart(&self, normal: Point, [from, to]: [[Point; 3]; 2]) -> bool {
@@ -132,9 +132,9 @@ mod tests {
         ) {
             let travel = to[0] - from[0];
             let to = if turns { to } else { from.map(|corner| corner + travel) };
-            let way = Way::new(ends, 0.05, 0.02);
+            let path = PointPath::new(ends, 0.05, 0.02);
             let end = ends[1] + off.normalize() * 0.02;
-            if let Facing::Apart = facing(&way, [from, to]).0 {
+            if let Facing::Apart = facing(&path, [from, to]).0 {
                 prop_assert!(shortest_line(end, to).0.norm() > 0.05);
                 for k in 0..=50 {
                     let share = f64::from(k) / 50.0;
@@ -151,8 +151,8 @@ mod tests {
             let middle = (face[0] + face[1] + face[2]) / 3.0;
             let normal = (face[1] - face[0]).cross(&(face[2] - face[0]));
             prop_assume!(normal.norm() > 1e-3 && (start - middle).dot(&normal).abs() > 0.05 * normal.norm());
-            let way = Way::new([start, start + (middle - start) * (1.0 + ahead)], 0.01, 0.002);
-            let (facing, height) = facing(&way, [face; 2]);
+            let path = PointPath::new([start, start + (middle - start) * (1.0 + ahead)], 0.01, 0.002);
+            let (facing, height) = facing(&path, [face; 2]);
             prop_assert!((height - (start - middle).dot(&normal) / normal.norm()).abs() < 1e-9);
             match facing {
                 Facing::Passes(_, share) => prop_assert!((share * (1.0 + ahead) - 1.0).abs() < 1e-9),

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use crate::contact::collider::contact::ColliderContact;
 use crate::contact::collider::motion_bounds::{MotionBox, box_contains};
 use crate::contact::collider::near_collider::{MARGIN, NearCollider, place_box};
-use crate::contact::collider::near_face::{Facing, Way, facing};
+use crate::contact::collider::near_face::{Facing, PointPath, facing};
 use crate::contact::collider::near_search::{Search, search_bound};
 use crate::contact::time_step::{ColliderStep, ContactCounters};
 use crate::math::{Lanes, Real, Row4};
@@ -150,7 +150,7 @@ impl<R: Real> NearPoints<R> {
         }
     }
 
-    /// Adds the contacts of the point at a place of the search. Where it passes a face, only the first on its way: pushed off
+    /// Adds the contacts of the point at a place of the search. Where it passes a face, only the first on its path: pushed off
     /// that, it comes near few of the others.
     fn add_contacts(
         &mut self,
@@ -260,10 +260,10 @@ impl<R: Real> NearPoints<R> {
 struct Listing<'a, R> {
     contacts: &'a mut Vec<ColliderContact<R, 1, 3>>,
     near: &'a mut NearPoint<R>,
-    way: Way,
+    path: PointPath,
     /// The same in the frame of the collider's boxes.
     among_boxes: [Vector3<f64>; 2],
-    /// Share of the way at which it passes the face of the first contact; infinite if it passes none.
+    /// Share of the path at which it passes the face of the first contact; infinite if it passes none.
     passed_at: f64,
     /// Height at the start above the face whose plane is nearest, in metres.
     height: f64,
@@ -281,19 +281,19 @@ impl<'a, R: Real> Listing<'a, R> {
         (near.passes, near.is_behind) = (false, false);
         let ends = [step.start_position(near.point), step.end_position(near.point)];
         let range = step.interaction_range().to_f64();
-        let way = Way::new(ends, range, MARGIN * DIAGONAL * range);
-        let way = if step.material.has_adhesion() { way.with_adhesion() } else { way };
-        let among_boxes = collider.way_among_boxes(ends);
-        Self { contacts, near, way, among_boxes, passed_at: f64::INFINITY, height: f64::INFINITY }
+        let path = PointPath::new(ends, range, MARGIN * DIAGONAL * range);
+        let path = if step.material.has_adhesion() { path.with_adhesion() } else { path };
+        let among_boxes = collider.path_among_boxes(ends);
+        Self { contacts, near, path, among_boxes, passed_at: f64::INFINITY, height: f64::INFINITY }
     }
 
     /// Adds the contact with a face, unless a plane excludes it. The first face that the point passes comes first.
     fn add(&mut self, face: u32, collider: &NearCollider<'_, R>, step: &ColliderStep<'_, R>) {
-        if !collider.comes_near(&self.among_boxes, face, self.way.range + self.way.margin) {
+        if !collider.comes_near(&self.among_boxes, face, self.path.range + self.path.margin) {
             return;
         }
         let (point, corners) = (self.near.point, collider.corners(face));
-        let (facing, height) = facing(&self.way, step.collider_positions(corners));
+        let (facing, height) = facing(&self.path, step.collider_positions(corners));
         if height.abs() < self.height.abs() {
             (self.height, self.near.is_behind) = (height, height < 0.0);
         }

@@ -1,6 +1,6 @@
 //! Points that leave a collider while another collider or the ground is in their way.
 //!
-//! Such a point is pinched: it goes out no farther than there is room, and moves with what it touches. Pushed by both in
+//! Such a point is pinched: it goes out no farther than there is clearance, and moves with what it touches. Pushed by both in
 //! turn, it would gain speed, and be moved sideways (Baraff, Witkin and Kass 2003, *Untangling cloth*, §6, flypapering).
 
 use nalgebra::Vector3;
@@ -11,7 +11,7 @@ use crate::contact::ground::pass::for_ground_contacts;
 use crate::contact::system::ContactPass;
 use crate::math::Real;
 
-/// Pushes the points of a cloth that are inside colliders outward, as far as there is room.
+/// Pushes the points of a cloth that are inside colliders outward, as far as there is clearance.
 pub fn push_points_outward<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, thickness_scale: f64) {
     let of_cloth = pass.contact.lists_of(cloth);
     if pass.contact.collider_contacts[of_cloth].iter().all(|list| list.depenetration.points.is_empty()) {
@@ -29,9 +29,10 @@ pub fn push_points_outward<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize,
         };
         list.depenetration.push_outward(&model.colliders[list.collider], &step, |point, outward| {
             let towards =
-                others(point).map(|obstacle| (obstacle.room.max(0.0), -obstacle.normal.dot(outward)));
-            let rooms = towards.filter(|&(_, share)| share > 0.0).map(|(room, share)| room / share);
-            rooms.fold(f64::INFINITY, f64::min)
+                others(point).map(|obstacle| (obstacle.clearance.max(0.0), -obstacle.normal.dot(outward)));
+            let clearances =
+                towards.filter(|&(_, share)| share > 0.0).map(|(clearance, share)| clearance / share);
+            clearances.fold(f64::INFINITY, f64::min)
         });
     });
     pass.contact.obstacles = obstacles;
@@ -51,7 +52,7 @@ fn find_obstacles<R: Real>(
         for &(point, face) in &list.depenetration.points {
             let corners = model.colliders[list.collider].boundary.triangles[face as usize];
             let normal = unit_normal(step.collider_positions(corners)[1]);
-            obstacles.push(Obstacle { point, collider: Some(list.collider), normal, room: 0.0 });
+            obstacles.push(Obstacle { point, collider: Some(list.collider), normal, clearance: 0.0 });
         }
     });
     let exits = obstacles.len();
@@ -62,9 +63,9 @@ fn find_obstacles<R: Real>(
             let [point] = contact.points;
             let is_inside = obstacles[..exits].binary_search_by_key(&point, |exit| exit.point).is_ok();
             if is_inside && !list.depenetration.contains(point) {
-                let room = (contact.gap(&step) - contact.rest_gap(&step, [R::ONE])).to_f64();
+                let clearance = (contact.gap(&step) - contact.rest_gap(&step, [R::ONE])).to_f64();
                 let normal = Vector3::from(contact.normal.map(R::to_f64));
-                obstacles.push(Obstacle { point, collider: Some(list.collider), normal, room });
+                obstacles.push(Obstacle { point, collider: Some(list.collider), normal, clearance });
             }
         }
     });
@@ -72,7 +73,12 @@ fn find_obstacles<R: Real>(
         for at in 0..if of == cloth { exits } else { 0 } {
             let point = obstacles[at].point;
             let normal = Vector3::from(ground.plane.normal().map(R::to_f64));
-            obstacles.push(Obstacle { point, collider: None, normal, room: ground.room(point).to_f64() });
+            obstacles.push(Obstacle {
+                point,
+                collider: None,
+                normal,
+                clearance: ground.clearance(point).to_f64(),
+            });
         }
     });
     obstacles.sort_unstable_by_key(|obstacle| obstacle.point);

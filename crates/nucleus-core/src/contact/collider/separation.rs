@@ -1,8 +1,8 @@
 //! Certificates that a cloth element and a collider element do not pass through each other in a time step.
 //!
 //! A direction along which the two have a gap at the start and at the end proves it, because both move along straight
-//! lines. Where there is none the motion is subdivided. For a point and a face that does not turn its way often decides at
-//! once: it meets the face, or, for free points, a plane along the way proves that it misses the face.
+//! lines. Where there is none the motion is subdivided. For a point and a face that does not turn, its path often decides at
+//! once: it meets the face, or, for free points, a plane along the path proves that it misses the face.
 
 use nalgebra::Vector3;
 
@@ -10,19 +10,19 @@ use crate::contact::ccd::separated_throughout;
 
 type Point = Vector3<f64>;
 
-/// Whether the two are separated throughout the step, by subdivision; where `by_way` is set, for a point and a face by a
-/// plane along its way first.
+/// Whether the two are separated throughout the step, by subdivision; where `by_path` is set, for a point and a face by a
+/// plane along its path first.
 pub fn separated<const N: usize, const M: usize>(
     [x0, x1]: [[Point; N]; 2],
     [q0, q1]: [[Point; M]; 2],
-    by_way: bool,
+    by_path: bool,
 ) -> bool {
     if let ([start], [end], [a0, b0, c0], [a1, b1, c1]) = (&x0[..], &x1[..], &q0[..], &q1[..]) {
-        let (way, faces) = ([*start, *end], [[*a0, *b0, *c0], [*a1, *b1, *c1]]);
-        if passes_through(way, faces) {
+        let (path, faces) = ([*start, *end], [[*a0, *b0, *c0], [*a1, *b1, *c1]]);
+        if passes_through(path, faces) {
             return false;
         }
-        if by_way && plane_along(way, faces, CLEAR_GAP).is_some() {
+        if by_path && plane_along(path, faces, CLEAR_GAP).is_some() {
             return true;
         }
     }
@@ -30,23 +30,23 @@ pub fn separated<const N: usize, const M: usize>(
     separated_throughout([&at(x0, q0), &at(x1, q1)], [0.0; 2]).is_some()
 }
 
-/// Share of a way below which a distance from a face is not clear, and share of a face that is its rim.
+/// Share of a path below which a distance from a face is not clear, and share of a face that is its rim.
 const CLEAR: f64 = 1e-6;
 const RIM: f64 = 1e-3;
 /// Gap in metres of a plane at the start of a step, far above rounding, so that of two faces with a common edge one at least
 /// is met.
 pub(super) const CLEAR_GAP: f64 = 1e-9;
 
-/// Whether a point clearly passes through the interior of a face that does not turn: no subdivision of its way has a
+/// Whether a point clearly passes through the interior of a face that does not turn: no subdivision of its path has a
 /// certificate.
-fn passes_through(way: [Point; 2], [from, to]: [[Point; 3]; 2]) -> bool {
+fn passes_through(path: [Point; 2], [from, to]: [[Point; 3]; 2]) -> bool {
     let travel = to[0] - from[0];
-    let rounding = CLEAR * (way[1] - way[0]).norm();
+    let rounding = CLEAR * (path[1] - path[0]).norm();
     if (1..3).any(|k| (to[k] - from[k] - travel).norm() > CLEAR * rounding) {
         return false;
     }
     let (u, v) = (from[1] - from[0], from[2] - from[0]);
-    let (start, end) = (way[0] - from[0], way[1] - travel - from[0]);
+    let (start, end) = (path[0] - from[0], path[1] - travel - from[0]);
     let normal = u.cross(&v);
     let heights = [normal.dot(&start), normal.dot(&end)];
     let is_clear = heights.iter().all(|height| height.abs() > rounding * normal.norm());
@@ -103,16 +103,16 @@ fn gaps_along<const N: usize, const M: usize>(n: Point, x: &[Point; N], q: &[Poi
     [ours[0] - theirs[1], theirs[0] - ours[1]]
 }
 
-/// A plane along the way of a point that has a face on its other side from the start to the end: the one with the largest
-/// gap of those through the way and parallel to an edge. For a face that does not turn there is one if the way misses the
+/// A plane along the path of a point that has a face on its other side from the start to the end: the one with the largest
+/// gap of those through the path and parallel to an edge. For a face that does not turn there is one if the path misses the
 /// face between its corners. Its gap is above `least` metres.
 pub fn plane_along([start, end]: [Point; 2], [from, to]: [[Point; 3]; 2], least: f64) -> Option<Point> {
     let middle = |corners: [Point; 3]| (corners[0] + corners[1] + corners[2]) / 3.0;
-    let way = (end - start) - (middle(to) - middle(from));
+    let path = (end - start) - (middle(to) - middle(from));
     let mut best = (least, None);
     for k in 0..3 {
         let edge = from[(k + 1) % 3] - from[k];
-        let across = way.cross(&edge);
+        let across = path.cross(&edge);
         // The third corner is on the other side of the plane through the edge.
         let across = if across.dot(&(from[(k + 2) % 3] - from[k])) > 0.0 { -across } else { across };
         let at_start = across.dot(&(start - from[k]));
@@ -143,13 +143,13 @@ mod tests {
     proptest! {
         #[test]
         fn no_subdivision_certifies_a_way_that_clearly_meets_a_face(
-            way in proptest::array::uniform2(place()), face in proptest::array::uniform3(place()), travel in place(),
+            path in proptest::array::uniform2(place()), face in proptest::array::uniform3(place()), travel in place(),
         ) {
             let faces = [face, face.map(|corner| corner + travel)];
-            if passes_through(way, faces) {
-                let at = |end: usize| ([way[end].into()], faces[end].map(Into::into));
+            if passes_through(path, faces) {
+                let at = |end: usize| ([path[end].into()], faces[end].map(Into::into));
                 prop_assert!(separated_throughout([&at(0), &at(1)], [0.0; 2]).is_none());
-                prop_assert!(plane_along(way, faces, CLEAR_GAP).is_none());
+                prop_assert!(plane_along(path, faces, CLEAR_GAP).is_none());
             }
         }
 
@@ -166,12 +166,12 @@ mod tests {
 
         #[test]
         fn a_plane_along_the_way_keeps_a_point_out_of_the_face_at_all_times(
-            way in proptest::array::uniform2(place()), from in proptest::array::uniform3(place()), to in proptest::array::uniform3(place()),
+            path in proptest::array::uniform2(place()), from in proptest::array::uniform3(place()), to in proptest::array::uniform3(place()),
         ) {
-            if let Some(normal) = plane_along(way, [from, to], CLEAR_GAP) {
+            if let Some(normal) = plane_along(path, [from, to], CLEAR_GAP) {
                 for k in 0..=100 {
                     let share = f64::from(k) / 100.0;
-                    let point = way[0] + (way[1] - way[0]) * share;
+                    let point = path[0] + (path[1] - path[0]) * share;
                     for (a, b) in from.iter().zip(&to) {
                         prop_assert!(normal.dot(&(point - (a + (b - a) * share))) > 0.0);
                     }

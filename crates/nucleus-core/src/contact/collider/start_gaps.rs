@@ -23,7 +23,7 @@ use crate::state::State;
 
 type Point = Vector3<f64>;
 
-/// Gap in metres of a point that starts in a surface: above rounding error, with room for a certificate.
+/// Gap in metres of a point that starts in a surface: above rounding error, large enough for a certificate.
 const START_GAP: f64 = 2.0 * MIN_THICKNESS;
 
 /// Looks at the start of a Classic run, once. Anchors are at the start positions; those of points in a surface move off it.

@@ -25,7 +25,7 @@ impl<R: Real> GroundContact<'_, R> {
     /// Whether no attribute differs by point.
     pub(super) fn is_uniform(&self) -> bool {
         let maps = self.material_maps;
-        let has_maps = !maps.thickness.is_empty() || !maps.room.is_ample() || !maps.friction.is_empty();
+        let has_maps = !maps.thickness.is_empty() || !maps.clearance.is_full() || !maps.friction.is_empty();
         !has_maps && !self.material.grips && !self.material.is_partial(maps)
     }
 

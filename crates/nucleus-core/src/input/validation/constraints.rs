@@ -96,13 +96,15 @@ pub(super) fn sanitize_exclusions(
     });
 }
 
-/// Whether the points of both sides exist, if only as room for particles.
+/// Whether the points of both sides exist, if only as capacity for particles.
 fn is_exclusion(exclusion: &Exclusion, last: &impl LastPositions) -> bool {
     let [cloths, colliders] = last.objects();
     exclusion.sides.iter().all(|side| match side {
         ExcludedSide::Everything => true,
         ExcludedSide::Points(of_cloths, of_colliders) => {
-            of_cloths.iter().all(|(cloth, point)| cloth.index() < cloths && point.index() < last.room(*cloth))
+            of_cloths
+                .iter()
+                .all(|(cloth, point)| cloth.index() < cloths && point.index() < last.capacity(*cloth))
                 && of_colliders.iter().all(|(collider, point)| {
                     collider.index() < colliders && point.index() < last.collider(*collider).len()
                 })

@@ -10,7 +10,7 @@ pub(super) fn are_births(births: &[Birth], last: &impl LastPositions) -> bool {
     births.is_sorted_by(|a, b| a.time <= b.time) && births.iter().all(|birth| is_birth(birth, last))
 }
 
-/// Whether a birth is in the frame, in an object with room for particles, and its numbers are in range.
+/// Whether a birth is in the frame, in an object with capacity for particles, and its numbers are in range.
 fn is_birth(birth: &Birth, last: &impl LastPositions) -> bool {
     (0.0..=1.0).contains(&birth.time)
         && is_in_range(&birth.position)

@@ -32,8 +32,8 @@ pub enum InvalidInput {
     /// frame; of two meshes the first does.
     #[error("the input mesh of cloth {} has not one finite position per point, or there are two of them", .0.0)]
     InputMesh(ClothId),
-    /// A birth: a number that is not usable, a time outside of the frame, or an object without room for particles.
-    #[error("a birth in cloth {} has a number that is not usable, or the cloth has no room for particles", .0.0)]
+    /// A birth: a number that is not usable, a time outside of the frame, or an object without capacity for particles.
+    #[error("a birth in cloth {} has a number that is not usable, or the cloth has no capacity for particles", .0.0)]
     Birth(ClothId),
     /// A change of a particle: a number that is not usable, or a particle that is not alive.
     #[error("a change of a particle of cloth {} has a number that is not usable, or there is no such particle", .0.0)]
@@ -95,7 +95,7 @@ pub trait LastPositions {
     /// How many points a cloth has.
     fn cloth_points(&self, cloth: ClothId) -> usize;
     /// How many points a cloth can have.
-    fn room(&self, cloth: ClothId) -> usize;
+    fn capacity(&self, cloth: ClothId) -> usize;
     /// How many particles of an object are alive; `None` where none are born or die.
     fn particles(&self, cloth: ClothId) -> Option<usize>;
     /// Whether all that a link refers to exists, and its numbers are in range.

@@ -1,14 +1,14 @@
-//! Room between surfaces that face each other: where it is less than the thicknesses of a point and both surfaces, contacts
+//! Clearance between surfaces that face each other: where it is less than the thicknesses of a point and both surfaces, contacts
 //! keep a share of them.
 //!
 //! Pushed to its whole thickness by each surface in turn, a point would be thrown from one to the other and through it. The
-//! shares leave room for both pushes. They hold for the time step in which a certificate failed; other steps have none.
-//! The room is found in [`collider::facing`](super::collider::facing).
+//! shares leave clearance for both pushes. They hold for the time step in which a certificate failed; other steps have none.
+//! The clearance is found in [`collider::facing`](super::collider::facing).
 
 use crate::math::{Real, dot};
 
 /// Smallest cosine between one normal and the opposite of the other at which two surfaces face each other: at a larger
-/// angle a point finds room beside them.
+/// angle a point finds clearance beside them.
 const FACING: f64 = 0.5;
 
 /// A surface near a point.
@@ -24,19 +24,19 @@ pub struct NearSurface<R> {
     pub thickness: R,
 }
 
-/// The share of its thickness that each point has room for.
+/// The share of its thickness that each point has clearance for.
 #[derive(Debug, Clone, Default)]
-pub struct Room<R> {
-    /// By row; empty where all points have room.
+pub struct Clearance<R> {
+    /// By row; empty where all points have clearance.
     shares: Vec<R>,
     /// Scratch.
     surfaces: Vec<NearSurface<R>>,
 }
 
-impl<R: Real> Room<R> {
-    /// Whether every point has room for its thickness.
+impl<R: Real> Clearance<R> {
+    /// Whether every point has clearance for its thickness.
     #[inline(always)]
-    pub fn is_ample(&self) -> bool {
+    pub fn is_full(&self) -> bool {
         self.shares.is_empty()
     }
 
@@ -49,12 +49,12 @@ impl<R: Real> Room<R> {
         (0..N).map(|k| weights[k] * self.shares[points[k] as usize]).sum()
     }
 
-    /// From now on every point has room.
+    /// From now on every point has clearance.
     pub fn clear(&mut self) {
         self.shares.clear();
     }
 
-    /// Finds the room of each of `rows` points, given what is near them in any order: `list` adds it.
+    /// Finds the clearance of each of `rows` points, given what is near them in any order: `list` adds it.
     pub fn find(&mut self, rows: usize, list: impl FnOnce(&mut Vec<NearSurface<R>>)) {
         let Self { shares, surfaces } = self;
         shares.clear();
@@ -71,7 +71,7 @@ impl<R: Real> Room<R> {
     }
 }
 
-/// The smallest share of any two surfaces that face each other; 1 where a point has room.
+/// The smallest share of any two surfaces that face each other; 1 where a point has clearance.
 fn least_share<R: Real>(surfaces: &[NearSurface<R>]) -> R {
     let mut least = R::ONE;
     for (at, a) in surfaces.iter().enumerate() {
@@ -96,20 +96,21 @@ mod tests {
     #[test]
     fn a_point_between_surfaces_keeps_the_share_of_its_thickness_that_fits() {
         let (up, down, aside) = ([0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]);
-        let mut room = Room::default();
+        let mut clearance = Clearance::default();
         let of_one_side = [near(0, up, 0.1), near(0, up, 0.2)];
         let of_both = [near(1, up, 0.5), near(2, up, 0.1), near(1, down, 1.5), near(2, aside, 0.1)];
-        room.find(4, |near| near.extend(of_one_side.into_iter().chain(of_both)));
-        assert_eq!([0, 1, 2, 3].map(|point| room.share([point], [1.0])), [1.0, 0.5, 1.0, 1.0]);
-        assert_eq!(room.share([1, 3], [0.5, 0.5]), 0.75, "an edge is interpolated");
-        room.find(4, |near| near.extend(of_one_side));
-        assert!(room.is_ample(), "one side leaves room");
+        clearance.find(4, |near| near.extend(of_one_side.into_iter().chain(of_both)));
+        assert_eq!([0, 1, 2, 3].map(|point| clearance.share([point], [1.0])), [1.0, 0.5, 1.0, 1.0]);
+        assert_eq!(clearance.share([1, 3], [0.5, 0.5]), 0.75, "an edge is interpolated");
+        clearance.find(4, |near| near.extend(of_one_side));
+        assert!(clearance.is_full(), "one side leaves clearance");
     }
 
     #[test]
     fn surfaces_that_overlap_leave_no_room_but_none_below_zero() {
-        let mut room = Room::default();
-        room.find(1, |list| list.extend([near(0, [0.0, 1.0, 0.0], -3.0), near(0, [0.0, -1.0, 0.0], 1.0)]));
-        assert_eq!(room.share([0], [1.0]), 0.0);
+        let mut clearance = Clearance::default();
+        clearance
+            .find(1, |list| list.extend([near(0, [0.0, 1.0, 0.0], -3.0), near(0, [0.0, -1.0, 0.0], 1.0)]));
+        assert_eq!(clearance.share([0], [1.0]), 0.0);
     }
 }

@@ -1,7 +1,7 @@
-//! The first way of a new particle, from its birth to the end of its substep: whether a collider, cloth or the ground plane
+//! The path of a new particle, from its birth to the end of its substep: whether a collider, cloth or the ground plane
 //! stands in it.
 //!
-//! Contact acts on a particle from the time step after its birth on. A particle that would pass a surface on its first way
+//! Contact acts on a particle from the time step after its birth on. A particle that would pass a surface on that path
 //! therefore stays at its place of birth, relative to the surface, and meets it in that time step.
 
 use std::cell::Cell;
@@ -33,16 +33,16 @@ pub struct Obstacles {
 }
 
 impl Obstacles {
-    /// Those of an object near the ways of its new particles, in a frame of `duration` seconds.
+    /// Those of an object near the paths of its new particles, in a frame of `duration` seconds.
     pub fn new<R: Real>(
         (model, state, contact): (&Model<R>, &State<R>, &mut ContactSystem<R>),
         cloth: usize,
-        ways: impl Iterator<Item = [Point; 2]>,
+        paths: impl Iterator<Item = [Point; 2]>,
         [end, duration]: [f64; 2],
     ) -> Self {
         fit_colliders(contact, model, cloth, end);
         let none = [Point::repeat(f64::INFINITY), Point::repeat(f64::NEG_INFINITY)];
-        let bound = ways.fold(none, |[low, high], [a, b]| [low.inf(&a).inf(&b), high.sup(&a).sup(&b)]);
+        let bound = paths.fold(none, |[low, high], [a, b]| [low.inf(&a).inf(&b), high.sup(&a).sup(&b)]);
         let velocity = |row: u32| Point::from(state.velocity[row as usize].xyz().map(R::to_f64));
         let of_face = |[a, b, c]: [u32; 3]| (velocity(a) + velocity(b) + velocity(c)) * (duration / 3.0);
         let is_near = |rows: &[u32; 3]| {
@@ -57,16 +57,16 @@ impl Obstacles {
     }
 
     /// Where the particle of a row stays that was born at a time, as a share of the frame, and would pass a surface on its
-    /// way to the end of the substep.
+    /// path to the end of the substep.
     pub fn stop<R: Real>(
         &self,
         (model, contact): (&Model<R>, &ContactSystem<R>),
         row: u32,
-        way: [Point; 2],
+        path: [Point; 2],
         born: f64,
     ) -> Option<Point> {
-        let by_cloth = || self.stop_at_cloth(contact, row, way, self.end - born);
-        stopped_at(contact, &model.colliders, (self.cloth, row), way, [born, self.end]).or_else(by_cloth)
+        let by_cloth = || self.stop_at_cloth(contact, row, path, self.end - born);
+        stopped_at(contact, &model.colliders, (self.cloth, row), path, [born, self.end]).or_else(by_cloth)
     }
 
     /// The same for cloth alone; `age` is a share of the frame.
@@ -74,16 +74,16 @@ impl Obstacles {
         &self,
         contact: &ContactSystem<R>,
         row: u32,
-        way: [Point; 2],
+        path: [Point; 2],
         age: f64,
     ) -> Option<Point> {
         let moved = Point::repeat(self.max_speed * age);
-        let around = [way[0].inf(&way[1]) - moved, way[0].sup(&way[1]) + moved];
+        let around = [path[0].inf(&path[1]) - moved, path[0].sup(&path[1]) + moved];
         let mut first: Option<(f64, Point)> = None;
         self.faces.for_faces(around, |face, corners| {
             // Seen from a face that is where it will be, the particle begins as far from it as it was born.
-            let start = way[0] + self.velocities[face] * age;
-            let Some(share) = meets(start, way[1] - start, corners) else { return };
+            let start = path[0] + self.velocities[face] * age;
+            let Some(share) = meets(start, path[1] - start, corners) else { return };
             let is_first = first.is_none_or(|(other, _)| share < other);
             if is_first && !contact.pair_filter.excludes(&[row], &self.rows[face]) {
                 first = Some((share, start));
@@ -128,15 +128,15 @@ fn stopped_at<R: Real>(
     contact: &ContactSystem<R>,
     colliders: &[ColliderModel],
     (cloth, row): (usize, u32),
-    way: [Point; 2],
+    path: [Point; 2],
     times: [f64; 2],
 ) -> Option<Point> {
     let of_collider = |(at, collider): (usize, &ColliderModel)| {
         let material = contact.collider_materials_of(cloth)[at].as_ref()?;
         let state = &contact.collider_states[at];
         // Seen from a collider that is where it will be, the particle begins as far from it as it was born.
-        let start = way[0] + state.mean_travel * (times[1] - times[0]);
-        let ray = way[1] - start;
+        let start = path[0] + state.mean_travel * (times[1] - times[0]);
+        let ray = path[1] - start;
         let is_met = Cell::new(false);
         let from = start - state.origin(times[1]);
         state.bvh.descend(
@@ -161,8 +161,8 @@ fn stopped_at<R: Real>(
     let on_ground = || {
         contact.ground_materials[cloth].as_ref()?;
         let height = |place: Point, time| contact.ground.at(place.into(), time).map(|(_, height)| height);
-        let was_above = height(way[0], times[0])? >= 0.0 && height(way[0], times[1])? >= 0.0;
-        (was_above && height(way[1], times[1])? < 0.0).then_some(way[0])
+        let was_above = height(path[0], times[0])? >= 0.0 && height(path[0], times[1])? >= 0.0;
+        (was_above && height(path[1], times[1])? < 0.0).then_some(path[0])
     };
     colliders.iter().enumerate().find_map(of_collider).or_else(on_ground)
 }

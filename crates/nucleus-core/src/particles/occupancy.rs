@@ -14,7 +14,7 @@ pub const MAX_TOUCHING: usize = 64;
 
 /// The places of particles of an object, by cells whose edge is the larger distance.
 #[derive(Debug)]
-pub struct Crowd {
+pub struct OccupancyGrid {
     /// Distance in metres that new particles keep from others; 0 where they may overlap.
     pruned: f64,
     /// Distance in metres at which particles touch; 0 where they do not collide.
@@ -22,7 +22,7 @@ pub struct Crowd {
     cells: BTreeMap<[i64; 3], Vec<Vector3<f64>>>,
 }
 
-impl Crowd {
+impl OccupancyGrid {
     /// That of an object, of its particles at `places` that are near new ones between two corners; `None` where new particles
     /// need not know of others.
     pub fn of(
@@ -34,15 +34,15 @@ impl Crowd {
         let pruned = 2.0 * own.thickness * cloth.overlap_pruning;
         let touching = if own.on { 2.0 * own.thickness } else { 0.0 };
         let [pruned, touching] = [pruned, touching].map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 });
-        let mut crowd = Self { pruned, touching, cells: BTreeMap::new() };
-        if crowd.edge() <= 0.0 {
+        let mut grid = Self { pruned, touching, cells: BTreeMap::new() };
+        if grid.edge() <= 0.0 {
             return None;
         }
-        let (low, high) = (low.add_scalar(-crowd.edge()), high.add_scalar(crowd.edge()));
+        let (low, high) = (low.add_scalar(-grid.edge()), high.add_scalar(grid.edge()));
         let is_near =
             |place: &Vector3<f64>| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis]);
-        places.filter(is_near).for_each(|place| crowd.add(place));
-        Some(crowd)
+        places.filter(is_near).for_each(|place| grid.add(place));
+        Some(grid)
     }
 
     fn edge(&self) -> f64 {
