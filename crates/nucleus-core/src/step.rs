@@ -54,7 +54,7 @@ use crate::particles::slowing::slow_particles;
 use crate::report::diagnostics::report;
 use crate::schedule::adaptive::splits;
 use crate::schedule::sweep_direction::alternating_cloths;
-use crate::schedule::{Pass, Schedule, TimeStep};
+use crate::schedule::{Pass, PassTime, Schedule, TimeStep};
 use crate::solver::{CompiledReal, Solver};
 use crate::state::kinematics::update_anchors;
 
@@ -193,20 +193,18 @@ fn begin_substep<R: CompiledReal>(
     substep: u32,
 ) {
     update_normals(&solver.model.cloths, &mut solver.state, frame.resistance, &solver.pool);
-    let (time, length) = (
-        f64::from(substep - 1) / f64::from(schedule.substeps),
-        frame.duration / f64::from(schedule.substeps),
-    );
+    let time = f64::from(substep - 1) / f64::from(schedule.substeps);
+    let start = PassTime { at: time, length: frame.duration / f64::from(schedule.substeps) };
     let Solver { model, state, contact, links, pool, .. } = solver;
     let objects =
         Objects { cloths: &model.cloths, colliders: (&model.colliders, &contact.collider_states), time };
     update_local_wind(&objects, state, frame, pool);
     push_out(model, state, contact, frame, time);
-    apply_force_fields(model, state, &contact.collider_states, frame, [time, length]);
-    apply_point_fields(model, state, &contact.collider_states, frame, [time, length]);
-    apply_link_forces(links, (model, &contact.collider_states), state, frame, [time, length]);
+    apply_force_fields(model, state, &contact.collider_states, frame, start);
+    apply_point_fields(model, state, &contact.collider_states, frame, start);
+    apply_link_forces(links, (model, &contact.collider_states), state, frame, start);
     if substep == 1 || frame.fields_per_substep {
-        let interval = if frame.fields_per_substep { length } else { frame.duration };
+        let interval = if frame.fields_per_substep { start.length } else { frame.duration };
         update_fields(model, state, frame, interval, pool);
     }
 }
@@ -222,15 +220,15 @@ fn end_substep<R: CompiledReal>(
 ) {
     let substep_length = schedule.h * f64::from(schedule.steps);
     end_push_out(&mut solver.state);
-    let end = f64::from(substep) / f64::from(schedule.substeps);
-    turn_particles(solver, frame, [end, substep_length]);
+    let end = PassTime { at: f64::from(substep) / f64::from(schedule.substeps), length: substep_length };
+    turn_particles(solver, frame, end);
     let has_lost_links = age_particles(solver, frame, schedule, substep, counters);
     damp(&solver.model.cloths, &mut solver.state, frame, alternates, substep_length, &solver.pool);
     slow_particles(&solver.model.cloths, &mut solver.state, frame, substep_length);
     let Solver { model, state, contact, links, .. } = solver;
-    damp_links(links, (model, &contact.collider_states), state, frame, [end, substep_length]);
+    damp_links(links, (model, &contact.collider_states), state, frame, end);
     let scene = (&*model, &contact.collider_states[..]);
-    let has_broken = break_links(links, scene, state, frame, [end, substep_length]);
+    let has_broken = break_links(links, scene, state, frame, end);
     if has_broken {
         tear_chambers(&model.cloths, &mut state.chambers, links);
     }
@@ -290,6 +288,7 @@ fn apply_pass<R: CompiledReal>(
     observer: &mut dyn StepObserver,
 ) {
     let TimeStep { frame, schedule, span, .. } = *now;
+    let end = PassTime { at: span.to, length: schedule.h };
     match pass {
         Pass::Constraints(sweeps) => {
             observer.enter(Stage::Constraints);
@@ -312,14 +311,7 @@ fn apply_pass<R: CompiledReal>(
         Pass::Whole(at) => {
             observer.enter(Stage::Constraints);
             let effect = &schedule.wholes[*at];
-            whole::relax(
-                effect,
-                &solver.model.cloths,
-                &mut solver.state,
-                frame,
-                [span.to, schedule.h],
-                &solver.pool,
-            );
+            whole::relax(effect, &solver.model.cloths, &mut solver.state, frame, end, &solver.pool);
         }
         Pass::Tethers(cloth) => {
             observer.enter(Stage::Constraints);
@@ -335,7 +327,7 @@ fn apply_pass<R: CompiledReal>(
             let Solver { model, state, contact, links, pool, .. } = solver;
             let sweep = &schedule.links[*at];
             let read = (&*model, &contact.collider_states[..], frame);
-            relax_links(links, sweep, read, state, [span.to, schedule.h], pool);
+            relax_links(links, sweep, read, state, end, pool);
         }
         Pass::Liquid(cloth) => {
             observer.enter(Stage::Constraints);

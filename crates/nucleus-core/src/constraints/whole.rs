@@ -4,7 +4,7 @@ use crate::input::frame::{BendSolver, Bending, FrameInput, InputMesh};
 use crate::math::Real;
 use crate::model::ClothModel;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::schedule::{WholeEffect, WholeSweep};
+use crate::schedule::{PassTime, WholeEffect, WholeSweep};
 use crate::state::{Chamber, State};
 
 use super::angle::AngleMemory;
@@ -29,15 +29,16 @@ pub fn prepare<R: Real>(models: &mut [ClothModel<R>], state: &mut State<R>, pool
     }
 }
 
-/// One pass of an effect over the cloth that it names, in a time step of `h` seconds that ends at a share `end` of the frame.
+/// One pass of an effect over the cloth that it names, in a time step that ends `now`.
 pub fn relax<R: Real>(
     whole: &WholeSweep,
     cloths: &[ClothModel<R>],
     state: &mut State<R>,
     frame: &FrameInput,
-    [end, h]: [f64; 2],
+    now: PassTime,
     pool: &ThreadPool,
 ) {
+    let PassTime { at: end, length: h } = now;
     let (cloth, settings) = (&cloths[whole.cloth], &frame.cloths[whole.cloth]);
     match whole.effect {
         WholeEffect::Pressure if cloth.pressure.is_on() => {

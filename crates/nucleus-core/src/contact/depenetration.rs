@@ -94,7 +94,7 @@ impl Depenetration {
         if std::mem::replace(&mut self.has_begun, true) || collider.pseudonormals.is_none() {
             return;
         }
-        let [low, high] = state.bounds(step.time[0]);
+        let [low, high] = state.bounds(step.time.start);
         let is_in = |place: Point| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis]);
         self.suspects.extend(points.filter(|&point| is_in(step.start_position(point))));
     }
@@ -116,7 +116,7 @@ impl Depenetration {
         for point in suspects.drain(..).filter(|&point| step.has_full_strength(point)) {
             let place = step.start_position(point);
             let last = before.exit_of(point);
-            let face = exit_face(place, last, collider, state, step.time[0]);
+            let face = exit_face(place, last, collider, state, step.time.start);
             points.extend(face.map(|face| (point, face)));
             if face.is_none() && last.is_some() {
                 freed(point);

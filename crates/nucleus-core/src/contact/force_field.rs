@@ -11,6 +11,7 @@ use crate::input::frame::{FieldSide, ForceField, FrameInput};
 use crate::input::samples::sample_at;
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
+use crate::schedule::PassTime;
 use crate::state::State;
 
 type Point = Vector3<f64>;
@@ -32,14 +33,13 @@ impl ForceField {
     }
 }
 
-/// Accelerates points in the fields of other objects for a substep of `length` seconds that begins at `time` as a share
-/// of the frame.
+/// Accelerates points in the fields of other objects for a substep that begins at a time.
 pub fn apply_force_fields<R: Real>(
     model: &Model<R>,
     state: &mut State<R>,
     colliders: &[ColliderState],
     frame: &FrameInput,
-    [time, length]: [f64; 2],
+    PassTime { at: time, length }: PassTime,
 ) {
     for at in 0..model.colliders.len() {
         let Some(field) = frame.colliders[at].field.filter(ForceField::is_on) else { continue };

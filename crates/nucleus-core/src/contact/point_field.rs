@@ -15,6 +15,7 @@ use crate::input::samples::sample_at;
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
 use crate::particles::population::Population;
+use crate::schedule::PassTime;
 use crate::state::State;
 
 type Point = Vector3<f64>;
@@ -55,14 +56,13 @@ impl Sources {
     }
 }
 
-/// Accelerates points in the fields of points for a substep of `length` seconds that begins at `time` as a share of the
-/// frame.
+/// Accelerates points in the fields of points for a substep that begins at a time.
 pub fn apply_point_fields<R: Real>(
     model: &Model<R>,
     state: &mut State<R>,
     colliders: &[ColliderState],
     frame: &FrameInput,
-    [time, length]: [f64; 2],
+    PassTime { at: time, length }: PassTime,
 ) {
     for (placed, settings) in colliders.iter().zip(&frame.colliders) {
         let Some(field) = settings.point_field.filter(PointField::is_on) else { continue };

@@ -13,6 +13,7 @@ use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, PushOut};
 use crate::math::{Real, Row4, dot, min, scale, sub};
 use crate::model::{ClothModel, Model};
+use crate::schedule::TimeInterval;
 use crate::state::State;
 
 type Point = Vector3<f64>;
@@ -93,7 +94,7 @@ fn push_out_of<R: Real>(
         state.pushed_out.push((row, sub(velocity, scale(normal, inward))));
     }
     if is_moved {
-        contact.active_windows[cloth] = [0.0; 2];
+        contact.active_windows[cloth] = TimeInterval::EXPIRED;
         if let Some(cloth_contacts) = &mut contact.cloth_contacts {
             cloth_contacts.untangling.is_search_due[cloth] = true;
         }

@@ -10,6 +10,7 @@ use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ColliderStepArgs;
 use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
+use crate::schedule::TimeInterval;
 use crate::state::State;
 
 /// Applies restitution at the end of a step: at the ground, at colliders, among cloths.
@@ -83,7 +84,8 @@ fn find_touches_of_colliders<R: Real>(
         let material = contact.collider_materials_of(cloth)[at]
             .filter(|material| even_without_bounce || material.has_restitution());
         let Some(material) = material else { continue };
-        let view = ColliderStepArgs { material, material_maps, at, h, time: [span.to; 2], interval };
+        let view =
+            ColliderStepArgs { material, material_maps, at, h, time: TimeInterval::at(span.to), interval };
         let step = view.of(state, &collider_states[at]);
         for &active in &list.active.points.indices {
             let contact = list.point_face[active as usize];

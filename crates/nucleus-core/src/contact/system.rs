@@ -26,7 +26,7 @@ use crate::model::vertex_maps::VertexMaps;
 use crate::model::{ClothModel, ColliderModel, Model};
 use crate::output::ContactState;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::schedule::{Schedule, StepInterval};
+use crate::schedule::{Schedule, StepInterval, TimeInterval};
 use crate::state::State;
 
 /// The state of contact that lasts from time step to time step.
@@ -36,8 +36,8 @@ pub struct ContactSystem<R: Real> {
     /// Candidate pairs, per cloth and collider.
     pub collider_contacts: Vec<ColliderContacts<R>>,
     /// By cloth: the candidate interval of its pairs, and that of its active pairs, as shares of the frame.
-    pub candidate_intervals: Vec<[f64; 2]>,
-    pub active_windows: Vec<[f64; 2]>,
+    pub candidate_intervals: Vec<TimeInterval>,
+    pub active_windows: Vec<TimeInterval>,
     /// By cloth: displacement per frame of the moving frame of its motion bounds, in metres.
     pub frame_travel: Vec<[R; 3]>,
     /// Motion bounds of each point in the interval of active pairs, and in the candidate interval; empty where the
@@ -102,8 +102,8 @@ impl<R: Real> ContactSystem<R> {
         Self {
             collider_states: colliders.iter().map(ColliderState::new).collect(),
             collider_contacts: (0..models.len()).flat_map(with_each).collect(),
-            candidate_intervals: vec![[0.0; 2]; models.len()],
-            active_windows: vec![[0.0; 2]; models.len()],
+            candidate_intervals: vec![TimeInterval::EXPIRED; models.len()],
+            active_windows: vec![TimeInterval::EXPIRED; models.len()],
             frame_travel: vec![[R::ZERO; 3]; models.len()],
             window_bounds: Vec::new(),
             interval_bounds: Vec::new(),

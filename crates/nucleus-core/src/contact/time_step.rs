@@ -9,6 +9,7 @@ use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::math::{Real, Row4, add};
 use crate::parallel::disjoint::DisjointSlice;
+use crate::schedule::TimeInterval;
 use crate::state::State;
 
 type Point = Vector3<f64>;
@@ -176,9 +177,9 @@ pub struct ColliderStep<'a, R> {
     /// The collider's points at the start and at the end of the frame.
     pub collider: [&'a [Point]; 2],
     /// Start and end of the step, as shares of the frame.
-    pub time: [f64; 2],
+    pub time: TimeInterval,
     /// The candidate interval, as shares of the frame.
-    pub interval: [f64; 2],
+    pub interval: TimeInterval,
     /// Start and end of the step, as shares of the candidate interval.
     pub shares: [R; 2],
     /// Length of the step in seconds.
@@ -336,8 +337,8 @@ impl<R: Real> ColliderStep<'_, R> {
         for k in 0..M {
             let [start, end] = [self.collider[0][points[k] as usize], self.collider[1][points[k] as usize]];
             let travel = end - start;
-            ends[0][k] = start + travel * self.time[0];
-            ends[1][k] = start + travel * self.time[1];
+            ends[0][k] = start + travel * self.time.start;
+            ends[1][k] = start + travel * self.time.end;
         }
         ends
     }
@@ -349,11 +350,11 @@ impl<R: Real> ColliderStep<'_, R> {
         for &point in points {
             let [start, end] = [self.collider[0][point as usize], self.collider[1][point as usize]];
             moves |= start != end;
-            support[0] = support[0].max(normal.dot(&(start + (end - start) * self.interval[0])));
+            support[0] = support[0].max(normal.dot(&(start + (end - start) * self.interval.start)));
         }
         support[1] = support[0];
         if moves {
-            let at_end = points.iter().map(|&q| normal.dot(&self.collider_position(q, self.interval[1])));
+            let at_end = points.iter().map(|&q| normal.dot(&self.collider_position(q, self.interval.end)));
             support[1] = at_end.fold(f64::NEG_INFINITY, f64::max);
         }
         support
@@ -378,18 +379,12 @@ pub struct ColliderStepArgs<'a, R> {
     /// Length of the step in seconds.
     pub h: f64,
     /// Start and end of the step, as shares of the frame.
-    pub time: [f64; 2],
+    pub time: TimeInterval,
     /// The candidate interval, as shares of the frame.
-    pub interval: [f64; 2],
+    pub interval: TimeInterval,
 }
 
 impl<R: Real> ColliderStepArgs<'_, R> {
-    /// A time as a share of the candidate interval.
-    fn share(&self, time: f64) -> R {
-        let [from, to] = self.interval;
-        R::from_f64(if to > from { (time - from) / (to - from) } else { 0.0 })
-    }
-
     /// The step of a cloth in `state` and a collider.
     pub fn of<'s>(&'s self, state: &'s mut State<R>, collider: &'s ColliderState) -> ColliderStep<'s, R> {
         self.with_columns(PositionWriter::of(state), collider)
@@ -408,7 +403,7 @@ impl<R: Real> ColliderStepArgs<'_, R> {
             collider: [&collider.start, &collider.end],
             time: self.time,
             interval: self.interval,
-            shares: self.time.map(|time| self.share(time)),
+            shares: self.time.ends().map(|time| R::from_f64(self.interval.share_of(time))),
             h: R::from_f64(self.h),
             thickness: R::from_f64(self.material.thickness),
             thickness_scale: R::ONE,

@@ -30,7 +30,8 @@ pub fn list_touches<R: Real>(
     model: &Model<R>,
     state: &State<R>,
     contact: &ContactSystem<R>,
-    [end, duration]: [f64; 2],
+    end: f64,
+    duration: f64,
 ) -> Vec<Touch> {
     let mut finder = TouchFinder { model, state, contact, end, duration, found: Vec::new() };
     let rotating = state.populations.iter().filter(|population| !population.rotations().is_empty());

@@ -15,6 +15,7 @@ use crate::contact::system::ContactSystem;
 use crate::math::Real;
 use crate::model::{ColliderModel, Model};
 use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::TimeInterval;
 use crate::state::State;
 
 type Point = Vector3<f64>;
@@ -38,7 +39,8 @@ impl Obstacles {
         (model, state, contact): (&Model<R>, &State<R>, &mut ContactSystem<R>),
         cloth: usize,
         paths: impl Iterator<Item = [Point; 2]>,
-        [end, duration]: [f64; 2],
+        end: f64,
+        duration: f64,
     ) -> Self {
         fit_colliders(contact, model, cloth, end);
         let none = [Point::repeat(f64::INFINITY), Point::repeat(f64::NEG_INFINITY)];
@@ -66,7 +68,14 @@ impl Obstacles {
         born: f64,
     ) -> Option<Point> {
         let by_cloth = || self.stop_at_cloth(contact, row, path, self.end - born);
-        stopped_at(contact, &model.colliders, (self.cloth, row), path, [born, self.end]).or_else(by_cloth)
+        stopped_at(
+            contact,
+            &model.colliders,
+            (self.cloth, row),
+            path,
+            TimeInterval { start: born, end: self.end },
+        )
+        .or_else(by_cloth)
     }
 
     /// The same for cloth alone; `age` is a share of the frame.
@@ -97,7 +106,7 @@ impl Obstacles {
 fn fit_colliders<R: Real>(contact: &mut ContactSystem<R>, model: &Model<R>, cloth: usize, time: f64) {
     for (at, collider) in model.colliders.iter().enumerate() {
         if contact.collider_materials_of(cloth)[at].is_some() {
-            contact.collider_states[at].fit_boxes(collider, [time; 2], &ThreadPool::new(1));
+            contact.collider_states[at].fit_boxes(collider, TimeInterval::at(time), &ThreadPool::new(1));
         }
     }
 }
@@ -129,21 +138,21 @@ fn stopped_at<R: Real>(
     colliders: &[ColliderModel],
     (cloth, row): (usize, u32),
     path: [Point; 2],
-    times: [f64; 2],
+    times: TimeInterval,
 ) -> Option<Point> {
     let of_collider = |(at, collider): (usize, &ColliderModel)| {
         let material = contact.collider_materials_of(cloth)[at].as_ref()?;
         let state = &contact.collider_states[at];
         // Seen from a collider that is where it will be, the particle begins as far from it as it was born.
-        let start = path[0] + state.mean_travel * (times[1] - times[0]);
+        let start = path[0] + state.mean_travel * times.length();
         let ray = path[1] - start;
         let is_met = Cell::new(false);
-        let from = start - state.origin(times[1]);
+        let from = start - state.origin(times.end);
         state.bvh.descend(
             |bounds| !is_met.get() && bounds.meets_ray(from, ray, 1.0),
             |face| {
                 let corners = collider.boundary.triangles[face as usize];
-                let share = meets(start, ray, corners.map(|corner| state.point(corner, times[1])));
+                let share = meets(start, ray, corners.map(|corner| state.point(corner, times.end)));
                 // A particle that a surface emits begins on it.
                 let is_ahead = share.is_some_and(|share| share * ray.norm() > MIN_THICKNESS);
                 if is_ahead && !contact.pair_filter.excludes_collider(&[row], at, &corners) {
@@ -154,15 +163,15 @@ fn stopped_at<R: Real>(
         let leaves = || {
             material.depenetrates
                 && collider.pseudonormals.is_some()
-                && is_inside(start, collider, state, times[1])
+                && is_inside(start, collider, state, times.end)
         };
         (is_met.get() && !leaves()).then_some(start)
     };
     let on_ground = || {
         contact.ground_materials[cloth].as_ref()?;
         let height = |place: Point, time| contact.ground.at(place.into(), time).map(|(_, height)| height);
-        let was_above = height(path[0], times[0])? >= 0.0 && height(path[0], times[1])? >= 0.0;
-        (was_above && height(path[1], times[1])? < 0.0).then_some(path[0])
+        let was_above = height(path[0], times.start)? >= 0.0 && height(path[0], times.end)? >= 0.0;
+        (was_above && height(path[1], times.end)? < 0.0).then_some(path[0])
     };
     colliders.iter().enumerate().find_map(of_collider).or_else(on_ground)
 }

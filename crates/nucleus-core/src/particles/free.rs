@@ -110,7 +110,7 @@ fn begin_colliders<R: Real>(
         let Some(material) = contact.collider_materials_of(cloth)[collider] else { continue };
         let list = &mut contact.collider_contacts[at];
         if list.is_near {
-            let times = [now.span.from, now.span.to];
+            let times = now.span.times();
             contact.collider_states[collider].fit_boxes(&model.colliders[collider], times, pool);
         }
         if !material.depenetrates {

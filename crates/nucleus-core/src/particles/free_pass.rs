@@ -65,7 +65,7 @@ impl<'a, R: Real> FreePass<'a, R> {
     /// The colliders that the points can touch, with their places.
     pub(super) fn colliders(&self) -> impl Iterator<Item = (usize, NearCollider<'_, R>)> {
         let (contact, span) = (self.contact, self.now.span);
-        let (h, time) = (self.now.schedule.h, [span.from, span.to]);
+        let (h, time) = (self.now.schedule.h, span.times());
         let lists = &contact.collider_contacts[contact.lists_of(self.cloth)];
         let near = lists.iter().filter_map(move |list| {
             let (at, material_maps) = (list.collider, &contact.material_maps);

@@ -17,7 +17,7 @@ use crate::particles::birth_path::Obstacles;
 use crate::particles::occupancy::OccupancyGrid;
 use crate::particles::population::{Newborn, Population, Spawn, close_up};
 use crate::particles::ramps::apply_ramps;
-use crate::schedule::Schedule;
+use crate::schedule::{PassTime, Schedule, TimeInterval};
 use crate::solver::Solver;
 use crate::state::{State, inverse_mass_of};
 
@@ -52,7 +52,7 @@ pub fn age_particles<R: Real>(
             counters.deaths += (before - kept.len()) as u64;
             links_changed |= remove_rows(solver, cloth, &kept);
         }
-        add_births(solver, index, frame, [schedule.h, end], counters);
+        add_births(solver, index, frame, PassTime { at: end, length: schedule.h }, counters);
         add_spawned(solver, index, (&spawned, length), counters);
     }
     apply_ramps(solver);
@@ -132,15 +132,16 @@ fn add_spawned<R: Real>(
     }
 }
 
-/// Adds the particles of an object that were born up to `end`, as a share of the frame, in time steps of `h` seconds.
+/// Adds the particles of an object that were born until `now`, in time steps of its length.
 fn add_births<R: Real>(
     solver: &mut Solver<R>,
     index: usize,
     frame: &FrameInput,
-    [h, end]: [f64; 2],
+    now: PassTime,
     counters: &mut ContactCounters,
 ) {
     let Solver { model, state, contact, pool, .. } = solver;
+    let PassTime { at: end, length: h } = now;
     let mut births = state.populations[index].due(&frame.births, end).peekable();
     if births.peek().is_none() {
         return;
@@ -158,7 +159,7 @@ fn add_births<R: Real>(
     let paths = paths.filter(|path| path.iter().all(is_in_range));
     let living = object.points().map(|row| state.position(row).into());
     let mut occupancy = OccupancyGrid::of(&frame.cloths[cloth], living, corners(paths.clone().flatten()));
-    let obstacles = Obstacles::new((&*model, &*state, contact), cloth, paths, [end, frame.duration]);
+    let obstacles = Obstacles::new((&*model, &*state, contact), cloth, paths, end, frame.duration);
     for (birth, age, (mut position, mut velocity)) in flights {
         let population = &mut state.populations[index];
         let row = row_of + population.len() as u32;
@@ -238,7 +239,7 @@ fn begin_contact_of<R: Real>(
 ) {
     contact.ground.set_anchors(rows.clone(), &state.anchor);
     rows.clone().for_each(|row| contact.invalidate_bounds(row as usize));
-    contact.active_windows[cloth] = [0.0; 2];
+    contact.active_windows[cloth] = TimeInterval::EXPIRED;
     if let Some(contacts) = &mut contact.cloth_contacts {
         contacts.interval_start[rows.start as usize..rows.end as usize].fill(Row4::ZERO);
     }
@@ -297,7 +298,7 @@ fn renumber_contacts<R: Real>(
 ) {
     let bounds = contact.bounds_violated.get_mut(before.start as usize..before.end as usize);
     bounds.unwrap_or_default().fill(true);
-    contact.active_windows[cloth] = [0.0; 2];
+    contact.active_windows[cloth] = TimeInterval::EXPIRED;
     let number = |row: u32| number_after(row, &before, kept);
     let of_cloth = contact.lists_of(cloth);
     for list in &mut contact.collider_contacts[of_cloth] {

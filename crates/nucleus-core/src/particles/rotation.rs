@@ -14,16 +14,17 @@ use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::math::Real;
 use crate::particles::looks::speed;
 use crate::particles::population::Rotation;
+use crate::schedule::PassTime;
 use crate::solver::Solver;
 
-/// Spins and turns the particles of all objects with rotation for a substep of `length` seconds that ends at `end`, as a
-/// share of the frame.
-pub fn turn_particles<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, [end, length]: [f64; 2]) {
+/// Spins and turns the particles of all objects with rotation for a substep that ends `now`.
+pub fn turn_particles<R: Real>(solver: &mut Solver<R>, frame: &FrameInput, now: PassTime) {
     if solver.state.populations.iter().all(|population| population.rotations().is_empty()) {
         return;
     }
     let Solver { model, state, contact, .. } = solver;
-    let touches = list_touches(model, state, contact, [end, frame.duration]);
+    let length = now.length;
+    let touches = list_touches(model, state, contact, now.at, frame.duration);
     for index in 0..state.populations.len() {
         let population = &state.populations[index];
         if population.rotations().is_empty() {

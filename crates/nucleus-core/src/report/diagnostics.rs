@@ -24,8 +24,8 @@ use crate::math::{Real, dot};
 use crate::model::ClothModel;
 use crate::model::rows::RowList;
 use crate::output::StepReport;
-use crate::schedule::Schedule;
 use crate::schedule::resistance::PhysicalStiffness;
+use crate::schedule::{Schedule, TimeInterval};
 use crate::solver::Solver;
 use crate::state::State;
 
@@ -305,7 +305,7 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, ground_gap: f64, schedule: &Sch
             material_maps,
             at: list.collider,
             h: schedule.h,
-            time: [1.0; 2],
+            time: TimeInterval::at(1.0),
             interval: list.interval,
         };
         let step = view.of(state, &collider_states[list.collider]);

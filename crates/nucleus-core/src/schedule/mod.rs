@@ -31,5 +31,7 @@ mod plan;
 pub mod resistance;
 pub mod sweep_direction;
 
-pub use pass::{Direction, Effect, Pass, StepInterval, Sweep, WholeEffect, WholeSweep};
+pub use pass::{
+    Direction, Effect, Pass, PassTime, StepInterval, Sweep, TimeInterval, WholeEffect, WholeSweep,
+};
 pub use plan::{Schedule, TimeStep};

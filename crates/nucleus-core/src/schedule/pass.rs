@@ -1,5 +1,6 @@
 //! A time step as data: its passes, the direction of its sweeps, and its interval in the frame.
 
+use crate::bytes::encode_struct;
 use crate::constraints::angle::AngleStrength;
 use crate::constraints::bend::BendStrength;
 use crate::constraints::shape::ShapeStrength;
@@ -81,12 +82,71 @@ pub struct StepInterval {
 }
 
 impl StepInterval {
+    /// The interval alone.
+    pub fn times(self) -> TimeInterval {
+        TimeInterval { start: self.from, end: self.to }
+    }
+
     /// The `part`th of so many equal parts.
     pub fn part(self, part: u32, parts: u32) -> Self {
         let cut = |part: u32| self.from + (self.to - self.from) * f64::from(part) / f64::from(parts);
         let to = if part + 1 == parts { self.to } else { cut(part + 1) };
         Self { from: cut(part), to, ..self }
     }
+}
+
+/// An interval of time, in shares of the frame (0 to 1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeInterval {
+    /// Its start.
+    pub start: f64,
+    /// Its end.
+    pub end: f64,
+}
+
+impl TimeInterval {
+    /// Nothing but the start of the frame: every time step ends later.
+    pub const EXPIRED: Self = Self::at(0.0);
+
+    /// An interval without length.
+    pub const fn at(time: f64) -> Self {
+        Self { start: time, end: time }
+    }
+
+    /// Its start and its end.
+    #[inline(always)]
+    pub fn ends(self) -> [f64; 2] {
+        [self.start, self.end]
+    }
+
+    /// Its length as a share of the frame.
+    #[inline(always)]
+    pub fn length(self) -> f64 {
+        self.end - self.start
+    }
+
+    /// A time as a share of the interval; 0 in one without length.
+    #[inline(always)]
+    pub fn share_of(self, time: f64) -> f64 {
+        if self.end > self.start { (time - self.start) / (self.end - self.start) } else { 0.0 }
+    }
+
+    /// Whether it lasts until a time, but for rounding.
+    #[inline(always)]
+    pub fn lasts_until(self, time: f64) -> bool {
+        time <= self.end + 1e-9
+    }
+}
+
+encode_struct!([] TimeInterval { start: f64, end: f64 });
+
+/// When a pass acts, and over which time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PassTime {
+    /// The time, as a share of the frame.
+    pub at: f64,
+    /// The length of the time step or substep in seconds.
+    pub length: f64,
 }
 
 /// The order of the rows in a sweep.

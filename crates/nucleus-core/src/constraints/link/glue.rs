@@ -14,6 +14,7 @@ use crate::input::frame::FrameInput;
 use crate::input::links::{ConstraintFrame, Link, LinkSide};
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
+use crate::schedule::PassTime;
 use crate::state::{Chamber, State};
 
 use super::lists::{ConstraintLinks, Links};
@@ -87,19 +88,18 @@ impl<R: Real> ConstraintLinks<R> {
     }
 }
 
-/// Breaks links and folds at the end of a substep of `length` seconds, at `time` as a share of the frame. Whether any
-/// broke.
+/// Breaks links and folds in a substep that ends `now`. Whether any broke.
 pub fn break_links<R: Real>(
     links: &mut Links<R>,
     scene: (&Model<R>, &[ColliderState]),
     state: &State<R>,
     frame: &FrameInput,
-    [time, length]: [f64; 2],
+    now: PassTime,
 ) -> bool {
     let mut any = false;
     for (own, settings) in links.constraints.iter_mut().zip(&frame.constraints) {
-        any |= settings.can_break && own.break_links(settings, state, length);
-        any |= own.has_folds() && own.break_folds(scene, state, settings, time);
+        any |= settings.can_break && own.break_links(settings, state, now.length);
+        any |= own.has_folds() && own.break_folds(scene, state, settings, now.at);
     }
     any
 }

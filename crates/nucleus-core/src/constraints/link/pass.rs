@@ -16,6 +16,7 @@ use crate::math::Real;
 use crate::model::Model;
 use crate::model::blocks::Partition;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::PassTime;
 use crate::state::State;
 
 /// Forms and heals links. Whether any is new, or whole again.
@@ -127,9 +128,10 @@ pub fn relax_links<R: Real>(
     sweep: &LinkSweep<R>,
     (model, colliders, frame): (&Model<R>, &[ColliderState], &FrameInput),
     state: &mut State<R>,
-    [time, h]: [f64; 2],
+    now: PassTime,
     pool: &ThreadPool,
 ) {
+    let PassTime { at: time, length: h } = now;
     let Links { constraints, blocks } = links;
     let Some(own) = constraints.get_mut(sweep.constraint) else { return };
     let settings = &frame.constraints[sweep.constraint];

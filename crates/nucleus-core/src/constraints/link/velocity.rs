@@ -11,18 +11,19 @@ use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::input::links::Link;
 use crate::math::Real;
 use crate::model::Model;
+use crate::schedule::PassTime;
 use crate::state::State;
 
 use super::ends::{Ends, Prescribed, vector};
 use super::lists::Links;
 
-/// Applies forces along links for a substep of `length` seconds that begins at `time` as a share of the frame.
+/// Applies forces along links for a substep that begins at a time.
 pub fn apply_link_forces<R: Real>(
     links: &Links<R>,
     (model, colliders): (&Model<R>, &[ColliderState]),
     state: &mut State<R>,
     frame: &FrameInput,
-    [time, length]: [f64; 2],
+    PassTime { at: time, length }: PassTime,
 ) {
     for (own, settings) in links.constraints.iter().zip(&frame.constraints) {
         let Some(force) = settings.force else { continue };
@@ -39,13 +40,13 @@ pub fn apply_link_forces<R: Real>(
     }
 }
 
-/// Damps links at the end of a substep of `length` seconds, at `time` as a share of the frame.
+/// Damps links in a substep that ends at a time.
 pub fn damp_links<R: Real>(
     links: &Links<R>,
     (model, colliders): (&Model<R>, &[ColliderState]),
     state: &mut State<R>,
     frame: &FrameInput,
-    [time, length]: [f64; 2],
+    PassTime { at: time, length }: PassTime,
 ) {
     for (own, settings) in links.constraints.iter().zip(&frame.constraints) {
         let rate = settings.damp.max(0.0) * length / COUNT_PERIOD;

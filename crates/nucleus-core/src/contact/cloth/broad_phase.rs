@@ -18,7 +18,7 @@ use crate::math::{Real, scale, sub};
 use crate::model::{ClothModel, Model};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::schedule::StepInterval;
+use crate::schedule::{StepInterval, TimeInterval};
 use crate::state::State;
 
 /// Length of a candidate interval in seconds, and its smallest length in time steps. Longer intervals find more
@@ -41,9 +41,9 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
     else {
         return;
     };
-    let is_within = now.to <= cloth_contacts.interval[1] + 1e-9;
+    let is_within = cloth_contacts.interval.lasts_until(now.to);
     let refresh = if is_within { RefreshKind::Incremental } else { RefreshKind::Full };
-    let previous_start = cloth_contacts.interval[0];
+    let previous_start = cloth_contacts.interval.start;
     if refresh.is_incremental() {
         if !find_violations(cloths, state, cloth_contacts, *now, pool) {
             return;
@@ -53,12 +53,11 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
         // The nearest whole number of intervals of equal length in a frame.
         let length = least.max(1.0 / (frame.duration / CANDIDATE_INTERVAL).round().max(1.0));
         let end = (now.from + length).min(1.0);
-        cloth_contacts.interval = [now.from, end.max(now.to)];
+        cloth_contacts.interval = TimeInterval { start: now.from, end: end.max(now.to) };
         renew_intersecting(cloths, cloth_contacts);
     }
     predict_trajectories(cloths, state, cloth_contacts, frame, *now, previous_start, refresh, pool);
-    let interval_share =
-        (now.from - cloth_contacts.interval[0]) / (cloth_contacts.interval[1] - cloth_contacts.interval[0]);
+    let interval_share = cloth_contacts.interval.share_of(now.from);
     let displacement = [&state.start[..], &state.displacement[..]];
     find_candidates(
         cloth_contacts,
@@ -97,8 +96,8 @@ fn find_violations<R: Real>(
     now: StepInterval,
     pool: &ThreadPool,
 ) -> bool {
-    let ClothContacts { interval: [from, to], bounds_violated, trajectories, .. } = cloth_contacts;
-    let share = R::from_f64((now.to - *from) / (*to - *from));
+    let ClothContacts { interval, bounds_violated, trajectories, .. } = cloth_contacts;
+    let share = R::from_f64(interval.share_of(now.to));
     let any = AtomicBool::new(false);
     let bounds_violated = DisjointSlice::new(bounds_violated);
     for cloth in cloths {

@@ -20,6 +20,7 @@ use crate::model::ClothModel;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::population::close_up;
+use crate::schedule::TimeInterval;
 
 /// All contact among cloths; empty where a scene has none.
 pub struct ClothContacts<R> {
@@ -37,7 +38,7 @@ pub struct ClothContacts<R> {
     /// Displacements at the start of the candidate interval.
     pub interval_start: Vec<Row4<R>>,
     /// The candidate interval, as shares of the frame.
-    pub interval: [f64; 2],
+    pub interval: TimeInterval,
     /// Points that violate their motion bound.
     pub bounds_violated: Vec<bool>,
     /// All contacts that can touch within the candidate interval.
@@ -61,7 +62,7 @@ impl<R: Real> ClothContacts<R> {
             trajectories: Trajectories::new(rows),
             local_anchors: LocalAnchors::default(),
             interval_start: vec![Row4::ZERO; rows],
-            interval: [1.0, 0.0], // expired
+            interval: TimeInterval { start: 1.0, end: 0.0 }, // expired
             bounds_violated: vec![true; rows],
             cache: ContactCache::default(),
             buffers: SearchBuffers::default(),

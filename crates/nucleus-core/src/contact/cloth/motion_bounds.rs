@@ -6,7 +6,7 @@
 
 use crate::math::{Real, Row4, add, dot, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
-use crate::schedule::StepInterval;
+use crate::schedule::{StepInterval, TimeInterval};
 
 /// The trajectory of each point over a candidate interval.
 #[derive(Debug, Clone, Default)]
@@ -121,9 +121,9 @@ pub struct BoundPredictor<R> {
 
 impl<R: Real> BoundPredictor<R> {
     /// For a step of an interval of the frame.
-    pub fn new(now: StepInterval, interval: [f64; 2]) -> Self {
-        let (step, length) = (now.to - now.from, interval[1] - interval[0]);
-        Self { step_start: R::from_f64((now.from - interval[0]) / length), steps: R::from_f64(length / step) }
+    pub fn new(now: StepInterval, interval: TimeInterval) -> Self {
+        let (step, length) = (now.to - now.from, interval.length());
+        Self { step_start: R::from_f64(interval.share_of(now.from)), steps: R::from_f64(length / step) }
     }
 
     /// Extrapolates the line by this step's motion, and at `rate` per step after it. The radius has a margin for this step.

@@ -13,6 +13,7 @@ use crate::input::frame::FrameInput;
 use crate::input::links::LinkSide;
 use crate::math::{Real, Row4, sub};
 use crate::output::{Stage, StepObserver};
+use crate::schedule::TimeInterval;
 use crate::state::State;
 
 /// Sets the contact materials of this frame, and carries motion bounds over to it. Before anchors move.
@@ -43,7 +44,7 @@ pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSyste
         let [x, y, z] = sub(interval_start.xyz(), moved.xyz());
         *interval_start = Row4([x, y, z, R::ZERO]);
     }
-    cloth_contacts.interval = [cloth_contacts.interval[0] - 1.0, 0.0];
+    cloth_contacts.interval = TimeInterval { start: cloth_contacts.interval.start - 1.0, end: 0.0 };
 }
 
 /// Gives cloths that links join the same weight in their contact, whatever their layers: a contact that moves only one of

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::contact::collider::ColliderState;
+use crate::schedule::TimeInterval;
 
 /// The motion of every place in a time step, in metres: linear in its position.
 #[derive(Debug, Clone, Copy)]
@@ -25,8 +26,8 @@ impl AffineMotion {
     }
 
     /// That of a collider between two times of the frame; `None` where it deforms otherwise, or is a line.
-    pub fn of(collider: &ColliderState, [from, to]: [f64; 2]) -> Option<Self> {
-        let ColliderState { start, end, .. } = collider;
+    pub fn of(collider: &ColliderState, times: TimeInterval) -> Option<Self> {
+        let (ColliderState { start, end, .. }, [from, to]) = (collider, times.ends());
         let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
         let [centre, end_centre] = [mean(start), mean(end)];
         let (mut spread, mut mixed) = (Matrix3::zeros(), Matrix3::zeros());
@@ -107,7 +108,7 @@ mod tests {
             [from, to] in proptest::array::uniform2(0.0..1.0f64),
         ) {
             let state = moved(&points, turn, travel);
-            let motion = AffineMotion::of(&state, [from, to]);
+            let motion = AffineMotion::of(&state, TimeInterval { start: from, end: to });
             prop_assume!(motion.is_some());
             for k in 0..points.len() as u32 {
                 let expected = state.point(k, to) - state.point(k, from);
@@ -122,7 +123,7 @@ mod tests {
             let state = moved(&points, turn, Point::zeros());
             let place = Point::new(0.3, above, 0.6);
             let expected = Rotation3::new(turn) * place;
-            let found = AffineMotion::of(&state, [0.0, 1.0]).map(|motion| place + motion.at(place));
+            let found = AffineMotion::of(&state, TimeInterval { start: 0.0, end: 1.0 }).map(|motion| place + motion.at(place));
             prop_assert!(found.is_some_and(|found| (found - expected).norm() < 1e-9), "{found:?}");
         }
     }
@@ -134,6 +135,6 @@ mod tests {
         let mut end = points;
         end[3].y = 0.5;
         state.begin_frame(&points, &end);
-        assert!(AffineMotion::of(&state, [0.0, 1.0]).is_none());
+        assert!(AffineMotion::of(&state, TimeInterval { start: 0.0, end: 1.0 }).is_none());
     }
 }

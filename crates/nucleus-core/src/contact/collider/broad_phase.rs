@@ -21,7 +21,7 @@ use crate::contact::time_step::ColliderStepArgs;
 use crate::math::{Real, Row4, dot};
 use crate::model::Model;
 use crate::parallel::disjoint::DisjointSlice;
-use crate::schedule::StepInterval;
+use crate::schedule::{StepInterval, TimeInterval};
 
 /// Margin of a motion bound in thicknesses: for the window, and for the candidate interval.
 const WINDOW_MARGIN: f64 = 0.05;
@@ -32,18 +32,18 @@ const WINDOW_STEPS: f64 = 8.0;
 /// Ensures that the active contacts of a cloth include all that can touch in this step. Does nothing while
 /// every point keeps its bound.
 pub fn update_collider_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
-    let times = pass.span;
-    let step = [times.from, times.to];
-    if step[1] <= pass.contact.active_windows[cloth][1] + 1e-9 && !has_violations(pass, cloth) {
+    let step = pass.span.times();
+    if pass.contact.active_windows[cloth].lasts_until(step.end) && !has_violations(pass, cloth) {
         return;
     }
     let window = loop {
-        if step[1] > pass.contact.candidate_intervals[cloth][1] + 1e-9 {
+        if !pass.contact.candidate_intervals[cloth].lasts_until(step.end) {
             begin_candidate_interval(pass, cloth);
         }
-        let rest = [step[0], pass.contact.candidate_intervals[cloth][1].min(interval_end(pass, cloth))];
-        let window = [step[0], rest[1].min(step[0] + (step[1] - step[0]) * WINDOW_STEPS)];
-        let has_new_bounds = predict_bounds(pass, cloth, [window, rest]);
+        let end = pass.contact.candidate_intervals[cloth].end.min(interval_end(pass, cloth));
+        let rest = TimeInterval { end, ..step };
+        let window = TimeInterval { end: end.min(step.start + step.length() * WINDOW_STEPS), ..step };
+        let has_new_bounds = predict_bounds(pass, cloth, window, rest);
         if find_approaching_colliders(pass.model, pass.state, pass.contact, cloth, window) {
             continue;
         }
@@ -83,12 +83,13 @@ pub fn update_collider_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth:
 /// colliders at rest contacts stay valid for as long as their points keep their bounds.
 fn begin_candidate_interval<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
     if near_colliders(pass.contact, cloth).any(|collider| pass.contact.collider_states[collider].moves) {
-        pass.contact.candidate_intervals[cloth] = [pass.span.from, interval_end(pass, cloth)];
+        pass.contact.candidate_intervals[cloth] =
+            TimeInterval { start: pass.span.from, end: interval_end(pass, cloth) };
         pass.contact.frame_travel[cloth] = moving_frame(pass.contact, cloth).map(R::from_f64);
         let points = pass.model.cloths[cloth].points();
         pass.contact.bounds_violated[points.start as usize..points.end as usize].fill(true);
     } else {
-        pass.contact.candidate_intervals[cloth] = [0.0, 1.0];
+        pass.contact.candidate_intervals[cloth] = TimeInterval { start: 0.0, end: 1.0 };
         pass.contact.frame_travel[cloth] = [R::ZERO; 3];
     }
 }
@@ -163,13 +164,14 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
             material_maps,
             at: collider,
             h: pass.schedule.h,
-            time: [pass.span.from; 2],
+            time: TimeInterval::at(pass.span.from),
             interval,
         };
         let step = &view.of(state, state_of);
         let (cloth, collider) = (&cloths[cloth], &colliders[collider]);
-        let frame_shifts =
-            interval.map(|time| Vector3::from(bounds.travel_at(time).map(R::to_f64)) - state_of.origin(time));
+        let frame_shifts = interval
+            .ends()
+            .map(|time| Vector3::from(bounds.travel_at(time).map(R::to_f64)) - state_of.origin(time));
         ColliderQuery {
             cloth,
             collider,
@@ -201,7 +203,8 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
 fn predict_bounds<R: Real>(
     pass: &mut ContactPass<'_, R>,
     cloth: usize,
-    [window, rest]: [[f64; 2]; 2],
+    window: TimeInterval,
+    rest: TimeInterval,
 ) -> bool {
     let ContactPass {
         state,
@@ -211,14 +214,14 @@ fn predict_bounds<R: Real>(
             ContactSystem { window_bounds, bound_growth, interval_bounds, frame_travel, bounds_violated, .. },
         ..
     } = pass;
-    let [frame_at_start, frame_now] = [pass.span.from, pass.span.to].map(|time| {
+    let [frame_at_start, frame_now] = pass.span.times().ends().map(|time| {
         let [x, y, z] = travel_at(frame_travel[cloth], time);
         Row4([x, y, z, R::ZERO])
     });
     let thickness = pass.frame.cloths[cloth].thickness.max(MIN_THICKNESS);
     let most = R::from_f64(cloths[cloth].edge_length);
-    let horizon = |time: [f64; 2], margin_share: f64| {
-        let left = (time[1] - time[0]) * pass.frame.duration;
+    let horizon = |time: TimeInterval, margin_share: f64| {
+        let left = time.length() * pass.frame.duration;
         let margin = pass.frame.gravity.norm() * left * left / 2.0 + margin_share * thickness;
         (R::from_f64(left / pass.schedule.h - 1.0), [R::from_f64(margin), most])
     };

@@ -63,7 +63,7 @@ fn for_candidates_in_fours<R: Real, const N: usize, const M: usize>(
     bounds: &MotionBounds<'_, R>,
     mut found: impl FnMut(&OverlappingPair<N, M>, ColliderContact<R, N, M>),
 ) {
-    let window = step.interval.map(|time| bounds.travel_at(time).map(|by| Four::splat(by.to_f64())));
+    let window = step.interval.ends().map(|time| bounds.travel_at(time).map(|by| Four::splat(by.to_f64())));
     let range = Four::splat(step.interaction_range().to_f64());
     for pairs in pairs.chunks(4) {
         let four = FourPairs::new(pairs, step);
@@ -156,7 +156,7 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
             }
             position
         };
-        Self { anchors, ours, theirs: at(step.time[0]), their_ends: step.interval.map(at) }
+        Self { anchors, ours, theirs: at(step.time.start), their_ends: step.interval.ends().map(at) }
     }
 
     #[inline(always)]

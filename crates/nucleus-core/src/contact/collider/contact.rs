@@ -311,7 +311,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Whether the contact is still where its plane was set.
     #[inline(always)]
     pub(super) fn plane_is_valid(&self, displacement: [[R; 3]; N], step: &ColliderStep<'_, R>) -> bool {
-        let time = R::from_f64(step.time[1]);
+        let time = R::from_f64(step.time.end);
         let displacement = self.contact_displacement(displacement);
         let away = sub(sub(displacement, scale(self.surface_motion, time)), self.plane_origin);
         let most = self.rest_gap(step, self.weights) * R::from_f64(PLANE_VALIDITY);
@@ -365,7 +365,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         self.weights = b.map(R::from_f64);
         self.surface_motion = [motion.x, motion.y, motion.z].map(R::from_f64);
         let contact = self.contact_displacement(step.displacements(self.points));
-        let time = R::from_f64(step.time[1]);
+        let time = R::from_f64(step.time.end);
         self.plane_origin = sub(contact, scale(self.surface_motion, time));
     }
 }

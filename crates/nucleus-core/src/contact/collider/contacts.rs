@@ -17,6 +17,7 @@ use crate::math::{Real, Row4};
 use crate::model::blocks::Blocks;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::TimeInterval;
 
 /// The contacts of one cloth and one collider over a candidate interval.
 #[derive(Debug)]
@@ -28,7 +29,7 @@ pub struct ColliderContacts<R> {
     /// Whether the two can touch in this frame. A collider that cannot has no contacts, and no influence on the cloth.
     pub is_near: bool,
     /// The candidate interval, as shares of the frame.
-    pub interval: [f64; 2],
+    pub interval: TimeInterval,
     /// Points of the cloth near faces of the collider.
     pub point_face: ContactList<R, 1, 3>,
     /// Edges near edges.
@@ -92,7 +93,7 @@ impl<R> FoundContacts<R> {
 impl<R: Real> ColliderContacts<R> {
     /// No contacts yet.
     pub fn new(cloth: usize, collider: usize) -> Self {
-        let interval = [0.0, 0.0];
+        let interval = TimeInterval::EXPIRED;
         Self {
             cloth,
             collider,
@@ -134,17 +135,14 @@ impl<R: Real> ColliderContacts<R> {
     pub fn activate(
         &mut self,
         bounds: &MotionBounds<'_, R>,
-        window: [f64; 2],
+        window: TimeInterval,
         material: &ContactMaterial<R>,
         growth: Option<&[R]>,
         blocks: &Blocks,
         pool: &ThreadPool,
     ) {
         let Self { interval, point_face, edge_edge, face_point, active, depenetration, .. } = self;
-        let share = |time: f64| {
-            if interval[1] > interval[0] { (time - interval[0]) / (interval[1] - interval[0]) } else { 0.0 }
-        };
-        let window = window.map(|time| (R::from_f64(share(time)), bounds.travel_at(time)));
+        let window = window.ends().map(|time| (R::from_f64(interval.share_of(time)), bounds.travel_at(time)));
         let thickness = R::from_f64(material.thickness);
         let range = [material.adhesion_range, CERTIFIED_GAP].map(|range| thickness * R::from_f64(range));
         let selection = Selection { bounds, window, range, growth, depenetration, blocks };

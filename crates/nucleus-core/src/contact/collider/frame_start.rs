@@ -13,6 +13,7 @@ use crate::contact::system::ContactSystem;
 use crate::input::frame::FrameInput;
 use crate::math::{Real, add, dot};
 use crate::model::{ClothModel, Model};
+use crate::schedule::TimeInterval;
 use crate::state::State;
 
 /// Takes contacts over into a new frame, before anchors move. Those of a cloth are searched anew if a collider near
@@ -23,8 +24,8 @@ pub fn begin_collider_contact<R: Real>(
     contact: &mut ContactSystem<R>,
     frame: &FrameInput,
 ) {
-    contact.active_windows.fill([0.0, 0.0]);
-    contact.candidate_intervals.fill([0.0, 0.0]);
+    contact.active_windows.fill(TimeInterval::EXPIRED);
+    contact.candidate_intervals.fill(TimeInterval::EXPIRED);
     contact.bound_growth.fill(R::ZERO);
     let is_same = update_materials(contact, frame);
     for (cloth, is_same) in is_same.into_iter().enumerate() {
@@ -134,12 +135,12 @@ pub fn find_approaching_colliders<R: Real>(
     state: &State<R>,
     contact: &mut ContactSystem<R>,
     cloth: usize,
-    window: [f64; 2],
+    window: TimeInterval,
 ) -> bool {
     if contact.collider_contacts[contact.lists_of(cloth)].iter().all(|list| list.is_near) {
         return false;
     }
-    let frame_motion = window.map(|time| travel_at(contact.frame_travel[cloth], time).map(R::to_f64));
+    let frame_motion = window.ends().map(|time| travel_at(contact.frame_travel[cloth], time).map(R::to_f64));
     let corners = model.cloths[cloth].points().flat_map(|row| {
         let anchor = state.anchor[row as usize];
         let bound = contact.window_bounds[row as usize].map(|corner| corner.xyz().map(R::to_f64));
@@ -162,7 +163,7 @@ pub fn find_approaching_colliders<R: Real>(
     }
     if any {
         invalidate_cloth(model, contact, cloth);
-        contact.candidate_intervals[cloth] = [0.0; 2];
+        contact.candidate_intervals[cloth] = TimeInterval::EXPIRED;
     }
     any
 }

@@ -22,7 +22,7 @@ pub fn for_contacts_of<R: Real>(
             material_maps,
             at: list.collider,
             h: pass.schedule.h,
-            time: [pass.span.from, pass.span.to],
+            time: pass.span.times(),
             interval: list.interval,
         };
         let collider = list.collider;

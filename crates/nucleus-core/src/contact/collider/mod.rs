@@ -61,6 +61,7 @@ use crate::contact::bvh::{Aabb, Bvh};
 use crate::model::ColliderModel;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::TimeInterval;
 
 /// A collider in the current frame, and the boxes of its elements over an interval of it.
 #[derive(Debug, Clone)]
@@ -84,7 +85,7 @@ pub struct ColliderState {
     /// Boxes over triangles.
     pub bvh: Bvh,
     /// The interval that the boxes cover; `None` if they are out of date.
-    fitted_interval: Option<[f64; 2]>,
+    fitted_interval: Option<TimeInterval>,
 }
 
 checkpoint_struct!([] ColliderState {
@@ -175,7 +176,7 @@ impl ColliderState {
 
     /// Fits the boxes to an interval of the frame, relative to [`origin`](Self::origin). Those of a collider at
     /// rest stay valid.
-    pub fn fit_boxes(&mut self, model: &ColliderModel, interval: [f64; 2], pool: &ThreadPool) {
+    pub fn fit_boxes(&mut self, model: &ColliderModel, interval: TimeInterval, pool: &ThreadPool) {
         if self.fitted_interval == Some(interval) || (self.fitted_interval.is_some() && !self.moves) {
             return;
         }
@@ -183,7 +184,7 @@ impl ColliderState {
         let bound = |points: &[u32]| {
             let path = points
                 .iter()
-                .flat_map(|&point| interval.map(|time| self.point(point, time) - self.origin(time)));
+                .flat_map(|&point| interval.ends().map(|time| self.point(point, time) - self.origin(time)));
             Aabb::of(path)
         };
         let boundary = &model.boundary;

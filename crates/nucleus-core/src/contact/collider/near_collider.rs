@@ -75,7 +75,7 @@ impl<'a, R: Real> NearCollider<'a, R> {
 
     /// The box in world space outside of which nothing touches it in the time step.
     pub fn reach(&self) -> [Vector3<f64>; 2] {
-        let [from, to] = self.args.time.map(|time| self.state.bounds(time));
+        let [from, to] = self.args.time.ends().map(|time| self.state.bounds(time));
         let range = self.args.material.thickness * self.args.material.adhesion_range;
         let margin = range * (1.0 + 2.0 * MARGIN);
         [from[0].inf(&to[0]).add_scalar(-margin), from[1].sup(&to[1]).add_scalar(margin)]
@@ -136,7 +136,7 @@ impl<'a, R: Real> NearCollider<'a, R> {
 
     /// A path in this step in the frame of the fitted boxes.
     pub fn path_among_boxes(&self, ends: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
-        let [from, to] = self.args.time.map(|time| self.state.origin(time));
+        let [from, to] = self.args.time.ends().map(|time| self.state.origin(time));
         [ends[0] - from, ends[1] - to]
     }
 
@@ -147,7 +147,7 @@ impl<'a, R: Real> NearCollider<'a, R> {
             let origin = self.state.origin(time);
             Aabb::new(low - origin, high - origin)
         };
-        let [from, to] = self.args.time;
+        let [from, to] = self.args.time.ends();
         let around = if self.state.moves { at(from).union(at(to)) } else { at(from) };
         around.inflate(range * (1.0 + 1e-6))
     }

@@ -229,7 +229,7 @@ impl<R: Real> NearPoints<R> {
     ) -> Option<u32> {
         let is_tested = collider.was_inside(near.point) || near.is_behind;
         (is_tested && step.has_full_strength(near.point))
-            .then(|| collider.exit_face(near.point, step.start_position(near.point), step.time[0]))?
+            .then(|| collider.exit_face(near.point, step.start_position(near.point), step.time.start))?
     }
 
     /// The places of the points near one collider; of one of them only, if it is given.

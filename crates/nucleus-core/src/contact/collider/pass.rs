@@ -16,6 +16,7 @@ use crate::contact::time_step::{ColliderStep, ContactCounters};
 use crate::math::Real;
 use crate::output::{Stage, StepObserver};
 use crate::parallel::thread_pool::ThreadPool;
+use crate::schedule::TimeInterval;
 
 /// One sweep over all contacts with the ground plane, then with colliders. `thickness_scale` is a factor on
 /// every thickness.
@@ -112,7 +113,7 @@ pub fn accept_unresolved_collider_contacts<R: Real>(pass: &mut ContactPass<'_, R
     for point in released {
         pass.contact.bounds_violated[point as usize] = true;
         let cloth = pass.model.cloths.partition_point(|cloth| cloth.points().end <= point);
-        pass.contact.active_windows[cloth] = [0.0, 0.0];
+        pass.contact.active_windows[cloth] = TimeInterval::EXPIRED;
     }
 }
 

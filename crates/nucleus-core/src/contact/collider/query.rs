@@ -262,7 +262,7 @@ impl<R: Real> ColliderQuery<'_, R> {
         let pseudonormals = self.collider.pseudonormals.as_ref().filter(|_| is_filtered);
         let is_behind = |pseudonormals| contact.is_behind(outward(pseudonormals, &normal));
         pseudonormals.is_some_and(is_behind)
-            && is_inside(contact.start_place(self.step), self.collider, self.state, self.step.time[0])
+            && is_inside(contact.start_place(self.step), self.collider, self.state, self.step.time.start)
     }
 
     /// Whether a point is behind the plane of a face.

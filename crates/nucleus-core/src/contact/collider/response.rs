@@ -152,7 +152,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 
     /// Moves the cloth's element with the surface, from its position at the start of the step.
     pub fn move_with_surface(&self, step: &ColliderStep<'_, R>) {
-        let elapsed = R::from_f64(step.time[1] - step.time[0]);
+        let elapsed = R::from_f64(step.time.length());
         for point in self.points {
             let mut row = step.row(point);
             if row.0[3] > R::ZERO {
@@ -185,7 +185,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         }
         let start = self.contact_displacement(step.start_displacements(self.points));
         let now = self.contact_displacement(step.displacements(self.points));
-        let elapsed = R::from_f64(step.time[1] - step.time[0]);
+        let elapsed = R::from_f64(step.time.length());
         let motion: [R; 3] = std::array::from_fn(|axis| {
             now[axis] + along[axis] - start[axis] - self.surface_motion[axis] * elapsed
         });
@@ -212,7 +212,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         let rows = self.points.map(|point| step.row(point));
         let start = step.start_displacements(self.points);
         let (gap, _) = self.gaps(start, step.shares[0]);
-        let (before, elapsed) = (self.normal.map(|n| n * gap), R::from_f64(step.time[1] - step.time[0]));
+        let (before, elapsed) = (self.normal.map(|n| n * gap), R::from_f64(step.time.length()));
         let [from, to] =
             [self.contact_displacement(start), self.contact_displacement(rows.map(|row| row.xyz()))];
         let now = std::array::from_fn(|axis| {

@@ -90,7 +90,7 @@ pub fn release_cleared_points<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usi
     let mut range = R::ZERO;
     for list in &collider_contacts[of_cloth] {
         let Some(material) = collider_materials[[cloth, list.collider]] else { continue };
-        let (h, time) = (pass.schedule.h, [pass.span.from, pass.span.to]);
+        let (h, time) = (pass.schedule.h, pass.span.times());
         let args =
             ColliderStepArgs { material, material_maps, at: list.collider, h, time, interval: list.interval };
         let step = args.of(state, &collider_states[list.collider]);
