@@ -15,11 +15,12 @@ use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
 use crate::particles::birth_path::Obstacles;
 use crate::particles::occupancy::OccupancyGrid;
-use crate::particles::population::{Newborn, Population, Spawn, close_up};
+use crate::particles::population::{Newborn, Population, Spawn};
 use crate::particles::ramps::apply_ramps;
 use crate::schedule::{PassTime, Schedule, TimeInterval};
 use crate::solver::Solver;
-use crate::state::{State, inverse_mass_of};
+use crate::state::State;
+use crate::state::rows::number_after;
 
 /// Removes the particles that have died in a substep, then adds those that were born in it, and those of collisions. The
 /// substep is counted from 1. Returns whether links have followed particles or gone with them.
@@ -120,7 +121,7 @@ fn add_spawned<R: Real>(
         let (lifespan, velocity) = (spawn.lifespan, spawn.velocity.into());
         if population.add(Newborn { age, lifespan, velocity, touches: true }) {
             let row = row_of + population.len() as u32 - 1;
-            set_row(state, row as usize, spawn.position, spawn.velocity, mass);
+            state.put_particle(row as usize, spawn.position, spawn.velocity, mass);
         } else {
             counters.deaths += 1;
         }
@@ -185,7 +186,7 @@ fn add_births<R: Real>(
                     occupancy.add(position);
                 }
                 let row = row_of + population.len() as u32 - 1;
-                set_row(state, row as usize, position, velocity, mass);
+                state.put_particle(row as usize, position, velocity, mass);
             }
             false => counters.deaths += 1,
         }
@@ -208,28 +209,6 @@ fn corners(places: impl Iterator<Item = Vector3<f64>>) -> [Vector3<f64>; 2] {
     places.fold(empty, |[low, high], place| [low.inf(&place), high.sup(&place)])
 }
 
-/// Puts a particle into a row.
-fn set_row<R: Real>(
-    state: &mut State<R>,
-    row: usize,
-    position: Vector3<f64>,
-    velocity: Vector3<f64>,
-    mass: f64,
-) {
-    state.inverse_mass[row] = inverse_mass_of(mass);
-    state.anchor[row] = position.into();
-    state.displacement[row] = Row4([R::ZERO, R::ZERO, R::ZERO, state.inverse_mass[row]]);
-    state.velocity[row] = Row4::new(velocity.into(), R::ZERO);
-    let columns = [
-        &mut state.predicted,
-        &mut state.start,
-        &mut state.depenetration,
-        &mut state.bearing_depenetration,
-        &mut state.field,
-    ];
-    columns.into_iter().filter_map(|column| column.get_mut(row)).for_each(|value| *value = Row4::ZERO);
-}
-
 /// New particles take part in contact from the next time step on.
 fn begin_contact_of<R: Real>(
     state: &State<R>,
@@ -250,42 +229,12 @@ fn begin_contact_of<R: Real>(
 fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) -> bool {
     let Solver { model, state, contact, links, .. } = solver;
     let points = model.cloths[cloth].points();
-    let rows = points.start as usize..points.end as usize;
-    close_up(&mut state.anchor[rows.clone()], kept);
-    close_up(&mut state.inverse_mass[rows.clone()], kept);
-    for column in [
-        &mut state.displacement,
-        &mut state.velocity,
-        &mut state.predicted,
-        &mut state.start,
-        &mut state.depenetration,
-        &mut state.bearing_depenetration,
-        &mut state.field,
-    ] {
-        close_up(column.get_mut(rows.clone()).unwrap_or_default(), kept);
-    }
-    state.displaced = std::mem::take(&mut state.displaced)
-        .into_iter()
-        .filter_map(|(row, motion)| Some((number_after(row, &points, kept)?, motion)))
-        .collect();
-    let dead = rows.start + kept.len()..rows.end;
-    state.anchor[dead.clone()].fill([0.0; 3]);
-    state.displacement[dead.clone()].fill(Row4::ZERO);
-    state.velocity[dead.clone()].fill(Row4::ZERO);
-    state.inverse_mass[dead].fill(R::ZERO);
+    state.close_up_particles(&points, kept);
     model.cloths[cloth].resize(kept.len());
     renumber_contacts(contact, cloth, points.clone(), kept);
     contact.ground.set_anchors(points.start..points.start + kept.len() as u32, &state.anchor);
     let number = |point: PointId| kept.binary_search(&point.0).ok().map(|at| PointId(at as u32));
     links.close_up(ClothId(cloth as u32), number, (&model.cloths, &model.colliders))
-}
-
-/// The row of a point once an object, whose rows were `before`, has kept only some places; `None` if it is gone.
-fn number_after(row: u32, before: &Range<u32>, kept: &[u32]) -> Option<u32> {
-    match before.contains(&row) {
-        true => kept.binary_search(&(row - before.start)).ok().map(|at| before.start + at as u32),
-        false => Some(row),
-    }
 }
 
 /// Follows the rows of an object that have moved. Contacts with colliders are searched anew; those among cloths keep their

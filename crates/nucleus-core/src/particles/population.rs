@@ -389,20 +389,50 @@ impl Population {
         let dies = |at: usize| self.now >= self.born[at] + self.lifespan[at];
         let kept: Vec<u32> = (0..self.len()).filter(|&at| !dies(at)).map(|at| at as u32).collect();
         self.topology += 1;
-        keep(&mut self.id, &kept);
-        keep(&mut self.born, &kept);
-        keep(&mut self.lifespan, &kept);
-        keep(&mut self.mass, &kept);
-        keep(&mut self.last_velocity, &kept);
-        keep(&mut self.acceleration, &kept);
-        keep(&mut self.touches, &kept);
-        keep(&mut self.collisions, &kept);
-        keep(&mut self.rotations, &kept);
-        keep(&mut self.field_factors, &kept);
-        keep(&mut self.viscosity_factors, &kept);
-        keep(&mut self.tension_factors, &kept);
+        self.keep(&kept);
         self.find_next_death();
         Some(kept)
+    }
+
+    /// Keeps the particles at these places, which ascend. It names every field, so that a new column does not compile until it
+    /// is kept or named as none.
+    fn keep(&mut self, kept: &[u32]) {
+        let Self {
+            id,
+            born,
+            lifespan,
+            mass,
+            last_velocity,
+            acceleration,
+            touches,
+            collisions,
+            rotations,
+            field_factors,
+            viscosity_factors,
+            tension_factors,
+            // Not by particle.
+            cloth: _,
+            capacity: _,
+            spawned: _,
+            spawns_refused: _,
+            rotates: _,
+            topology: _,
+            next_id: _,
+            now: _,
+            next_death: _,
+            considered: _,
+            birth_mass: _,
+            radius: _,
+            ramps: _,
+            events: _,
+        } = self;
+        keep(id, kept);
+        [born, lifespan, mass, acceleration].into_iter().for_each(|column| keep(column, kept));
+        keep(last_velocity, kept);
+        keep(touches, kept);
+        keep(collisions, kept);
+        keep(rotations, kept);
+        [field_factors, viscosity_factors, tension_factors].into_iter().for_each(|column| keep(column, kept));
     }
 
     /// Takes up columns that were restored; `None` where they are no population of this object.

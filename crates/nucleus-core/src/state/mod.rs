@@ -6,6 +6,7 @@
 //! its height.
 
 pub mod kinematics;
+pub mod rows;
 pub mod start;
 
 use std::ops::Range;

@@ -21,6 +21,7 @@ use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::population::close_up;
 use crate::schedule::TimeInterval;
+use crate::state::rows::number_after;
 
 /// All contact among cloths; empty where a scene has none.
 pub struct ClothContacts<R> {
@@ -82,23 +83,26 @@ impl<R: Real> ClothContacts<R> {
             interval_start,
             trajectories,
             local_anchors,
-            ..
+            // Not by row.
+            materials: _,
+            overlapping: _,
+            interval: _,
+            // Written in each step before it is read.
+            frozen: _,
+            // Only cloth with faces intersects.
+            untangling: _,
         } = self;
         let rows = points.start as usize..points.end as usize;
         buffers.bounds.close_up(rows.clone(), kept);
         buffers.group_margins.clear();
         local_anchors.clear();
         close_up(&mut interval_start[rows.clone()], kept);
-        close_up(&mut trajectories.origin[rows.clone()], kept);
-        close_up(&mut trajectories.travel[rows.clone()], kept);
+        trajectories.close_up(rows.clone(), kept);
         close_up(&mut bounds_violated[rows.clone()], kept);
         let dead = rows.start + kept.len()..rows.end;
         interval_start[dead.clone()].fill(Row4::ZERO);
         bounds_violated[dead].fill(true);
-        let number = |row: u32| match points.contains(&row) {
-            true => kept.binary_search(&(row - points.start)).ok().map(|at| points.start + at as u32),
-            false => Some(row),
-        };
+        let number = |row: u32| number_after(row, &points, kept);
         cache.renumber(&number, (&elements.block, elements.blocks));
     }
 

@@ -4,8 +4,11 @@
 //! The line follows the point's own motion, so neighbours that move together keep their distance: a sheet that
 //! falls or swings finds no contact with itself.
 
+use std::ops::Range;
+
 use crate::math::{Real, Row4, add, dot, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
+use crate::particles::population::close_up;
 use crate::schedule::{StepInterval, TimeInterval};
 
 /// The trajectory of each point over a candidate interval.
@@ -47,6 +50,13 @@ impl<R: Real> Trajectories<R> {
     /// Empty trajectories.
     pub fn new(rows: usize) -> Self {
         Self { origin: vec![Row4::ZERO; rows], travel: vec![Row4::ZERO; rows] }
+    }
+
+    /// Closes up rows; `kept` are the places of those that remain, which ascend.
+    pub fn close_up(&mut self, rows: Range<usize>, kept: &[u32]) {
+        let Self { origin, travel } = self;
+        close_up(&mut origin[rows.clone()], kept);
+        close_up(&mut travel[rows], kept);
     }
 
     /// The trajectory of one point.
