@@ -1,6 +1,7 @@
 //! Cloth and colliders: from nodes to the model.
 
-use nucleus_core::{Cloth, ClothId, ClothLists, Collider, ColliderId, Mass, Surface};
+use nalgebra::Vector3;
+use nucleus_core::{Cloth, ClothId, ClothLists, Collider, ColliderId, Mass, Start, Surface};
 
 use crate::attributes::{Key, n_base, n_cloth, n_particle, n_rigid, nucleus, particle, surface_shape};
 use crate::graph::{Graph, NodeId};
@@ -8,10 +9,11 @@ use crate::mesh::area;
 
 use super::animated_mesh::AnimatedMesh;
 use super::compiler::{CompiledNucleus, Compiler};
+use super::constraints::split_mesh::Tearing;
 use super::initial_state::PlacedObject;
 use super::program::ObjectKind;
 use super::soft_body;
-use super::sources::{ClothSource, ColliderSource, MapScales};
+use super::sources::{ClothSource, ColliderSource, MapScales, RecordedPoints};
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::units::{self, CLASSIC};
 use super::vertex_maps::CompiledMaps;
@@ -68,51 +70,97 @@ impl Compiler<'_> {
         self.warn_of_contradictions(id);
         let given = surface.positions.len();
         let tearing = self.tearing(id, mesh, &surface);
-        let [input, rest] =
-            [Some(surface), rest].map(|surface| surface.map(|s| self.program.units.surface(s)));
-        let split = |surface: Surface| match &tearing {
-            Some(tearing) => tearing.split(surface),
-            None => surface,
-        };
-        let [input, rest] = [input, rest].map(|surface| surface.map(split));
-        // The rest shape is the mesh to the solver; where it differs from the input mesh, that is the start.
-        let (surface, moved) = match (input, rest) {
-            (Some(input), Some(rest)) => (rest, Some(input.positions)),
-            (input, _) => (input?, None),
-        };
+        let (surface, moved) = self.rest_and_start(surface, rest, tearing.as_ref());
         self.warn_of_stiffness(id);
-        let maps = self.vertex_maps(id, mesh, given);
-        let start = self.start_state(id, mesh, given);
-        let (CompiledMaps { scales, mut vertex_maps }, mut start) = (maps?, start?);
-        let mut recorded = self.recorded(id, Some((mesh, given)))?;
-        if let Some(positions) = recorded.as_ref().and_then(|recorded| recorded.at(self.start.frame())) {
-            start.positions = positions.to_vec();
-        }
-        if let Some(tearing) = &tearing {
-            let is_classic = self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC;
-            vertex_maps = tearing.maps(vertex_maps, is_classic);
-            tearing.extend(&mut start.positions);
-            tearing.extend(&mut start.velocities);
-            recorded.iter_mut().for_each(|recorded| recorded.extend(tearing));
-        }
+        let (CompiledMaps { scales, vertex_maps }, mut start, recorded) =
+            self.maps_and_start(id, mesh, given, tearing.as_ref())?;
         if start.positions.is_empty() {
             start.positions = moved.unwrap_or_default();
         }
         self.perturb(id, &surface, &mut start.positions);
-        let point_mass = self.start.get(id, &n_base::POINT_MASS) * scales.mass;
-        let mass = match self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) {
-            CLASSIC => Mass::PerPoint(point_mass),
-            _ => Mass::PerArea(point_mass),
-        };
+        let mass = self.mass_of(id, &scales);
         self.warn_of_free_points(self.scene.graph.node(id).name(), mesh, &surface);
-        let points = surface.positions.len();
-        let faces = surface.faces.clone();
         let lists = constraint_lists(&self.scene.graph, id, self.program.node, &scales);
         let followed = self.followed_mesh(id, mesh, &vertex_maps.input_attract);
-        let (face_count, area) = (faces.len(), area(&surface.faces, &surface.positions));
+        let (faces, area) = (surface.faces.len(), area(&surface.faces, &surface.positions));
         let split_off = tearing.as_ref().map_or_else(Vec::new, |tearing| tearing.twins.clone());
         let cloth = Cloth { surface, mass, lists, warp, vertex_maps, start, particles: None, split_off };
-        let kilograms = match mass {
+        self.add_cloth(id, mesh, cloth, given, area)?;
+        self.program.cloths.push(ClothSource {
+            node: id,
+            is_particles: false,
+            default_thickness,
+            is_dense,
+            scales,
+            faces,
+            area,
+            followed,
+            tearing,
+            recorded,
+        });
+        Some(())
+    }
+
+    /// The mesh of the solver, in metres and with its twins, and the positions that it starts at where they are others: the rest
+    /// shape is the mesh to the solver, and the input mesh then is the start.
+    fn rest_and_start(
+        &self,
+        input: Surface,
+        rest: Option<Surface>,
+        tearing: Option<&Tearing>,
+    ) -> (Surface, Option<Vec<Vector3<f64>>>) {
+        let in_metres = |surface| {
+            let surface = self.program.units.surface(surface);
+            match tearing {
+                Some(tearing) => tearing.split(surface),
+                None => surface,
+            }
+        };
+        let input = in_metres(input);
+        match rest.map(in_metres) {
+            Some(rest) => (rest, Some(input.positions)),
+            None => (input, None),
+        }
+    }
+
+    /// Vertex maps, start and recorded points of a cloth of so many points, with the twins of those that can tear apart.
+    fn maps_and_start(
+        &mut self,
+        id: NodeId,
+        mesh: NodeId,
+        points: usize,
+        tearing: Option<&Tearing>,
+    ) -> Option<(CompiledMaps, Start, Option<RecordedPoints>)> {
+        let maps = self.vertex_maps(id, mesh, points);
+        let start = self.start_state(id, mesh, points);
+        let (mut maps, mut start) = (maps?, start?);
+        let mut recorded = self.recorded(id, Some((mesh, points)))?;
+        if let Some(positions) = recorded.as_ref().and_then(|recorded| recorded.at(self.start.frame())) {
+            start.positions = positions.to_vec();
+        }
+        if let Some(tearing) = tearing {
+            maps.vertex_maps = tearing.maps(maps.vertex_maps, self.is_classic());
+            tearing.extend(&mut start.positions);
+            tearing.extend(&mut start.velocities);
+            recorded.iter_mut().for_each(|recorded| recorded.extend(tearing));
+        }
+        Some((maps, start, recorded))
+    }
+
+    /// The mass of the points of a cloth.
+    fn mass_of(&self, id: NodeId, scales: &MapScales) -> Mass {
+        let point_mass = self.start.get(id, &n_base::POINT_MASS) * scales.mass;
+        if self.is_classic() { Mass::PerPoint(point_mass) } else { Mass::PerArea(point_mass) }
+    }
+
+    fn is_classic(&self) -> bool {
+        self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) == CLASSIC
+    }
+
+    /// Adds a cloth to the model. Its mesh was given with so many points, and has an area in m².
+    fn add_cloth(&mut self, id: NodeId, mesh: NodeId, cloth: Cloth, given: usize, area: f64) -> Option<()> {
+        let (points, faces) = (cloth.surface.positions.len(), cloth.surface.faces.clone());
+        let kilograms = match cloth.mass {
             _ if !cloth.vertex_maps.mass.is_empty() => cloth.point_masses().iter().sum(),
             Mass::PerPoint(mass) => mass * points as f64,
             Mass::PerArea(mass) => mass * area,
@@ -124,23 +172,10 @@ impl Compiler<'_> {
                 if let Some(object) = self.objects.last_mut() {
                     object.mesh_points = given;
                 }
+                Some(())
             }
-            Err(error) => return self.report_refused(id, mesh, &error),
+            Err(error) => self.report_refused(id, mesh, &error),
         }
-        let is_particles = false;
-        self.program.cloths.push(ClothSource {
-            node: id,
-            is_particles,
-            default_thickness,
-            is_dense,
-            scales,
-            faces: face_count,
-            area,
-            followed,
-            tearing,
-            recorded,
-        });
-        Some(())
     }
 
     /// The Classic resistance model has no use for a stiffness.
@@ -158,7 +193,7 @@ impl Compiler<'_> {
             &WEFT_STIFFNESS,
         ];
         let node = self.scene.graph.node(cloth);
-        if self.start.get(self.program.node, &nucleus::RESISTANCE_MODEL) != CLASSIC {
+        if !self.is_classic() {
             return;
         }
         for key in keys {

@@ -155,8 +155,6 @@ impl Compiler<'_> {
     /// Reports members that a constraint cannot join.
     fn check_members(&mut self, node: NodeId, members: &[Member]) -> bool {
         let values = Values::new(&self.start, node);
-        let (kind, relation) = (values.kind, values.choice(&con::CONSTRAINT_RELATION));
-        let within = values.toggle(&con::CONNECT_WITHIN_COMPONENT);
         let name = self.scene.graph.node(node).name();
         let listed = self.scene.graph.node(node).setting(&con::COMPONENTS).is_some();
         if members.is_empty() {
@@ -166,46 +164,11 @@ impl Compiler<'_> {
             }
             return false;
         }
-        let has_edges = members.iter().any(|member| member.kind == ElementKind::Edge);
-        if values.toggle(&con::BEND) && kind != kinds::TEARABLE && !has_edges {
-            let place = self.scene.source.place(&format!("{name}.{}", con::BEND.row.name));
-            let message = format!("`bend` of `{name}` has no effect: none of its components are edges");
-            self.findings
-                .warning(&place, message)
-                .help("edges bend about each other: name `cloth1.e[border]`");
+        let bends = values.toggle(&con::BEND) && values.kind != kinds::TEARABLE;
+        let problem = problem_of(&values, members);
+        if bends {
+            self.check_bend(name, members);
         }
-        let is_passive = |member: &Member| matches!(member.object, MemberObject::Collider(_));
-        let objects: BTreeSet<_> = members.iter().map(|member| member.object.key()).collect();
-        let needs_two = matches!(
-            kind,
-            kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE | kinds::MATCH | kinds::EXCLUDE_PAIRS
-        );
-        let surface_first = matches!(kind, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);
-        let all_passive = members.iter().all(is_passive) && kind != kinds::DISABLE_COLLISION;
-        let problem = if all_passive {
-            Some((
-                "joins only passive objects, which nothing moves",
-                "name a part of a cloth or of particles",
-            ))
-        } else if needs_two && members.len() < 2 {
-            Some(("has one member, and this kind joins two", "name parts of both objects in `components`"))
-        } else if surface_first && members[0].kind != ElementKind::Face {
-            Some((
-                "needs a surface as its first component",
-                "name the surface first: a whole object, or faces (`cloth1.f[*]`)",
-            ))
-        } else if kind == kinds::SLIDE_ON_SURFACE && objects.len() < 2 {
-            Some(("slides an object on itself", "name another object first"))
-        } else if kind == kinds::MATCH && members[0].points().len() != members[1].points().len() {
-            Some(("matches objects of different numbers of points", "both meshes need the same points"))
-        } else if relation == 1 && members.len() == 1 && !within && !joins_itself(kind) {
-            Some((
-                "joins a component to itself",
-                "name another component, or set `connectWithinComponent: true`",
-            ))
-        } else {
-            None
-        };
         if let Some((problem, help)) = problem {
             let place = self.scene.source.place(&format!("{name}.components"));
             let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
@@ -213,6 +176,16 @@ impl Compiler<'_> {
             self.findings.error(&place, message).help(help);
         }
         problem.is_none()
+    }
+
+    /// Reports a constraint that bends and has no edges.
+    fn check_bend(&mut self, name: &str, members: &[Member]) {
+        if members.iter().any(|member| member.kind == ElementKind::Edge) {
+            return;
+        }
+        let place = self.scene.source.place(&format!("{name}.{}", con::BEND.row.name));
+        let message = format!("`bend` of `{name}` has no effect: none of its components are edges");
+        self.findings.warning(&place, message).help("edges bend about each other: name `cloth1.e[border]`");
     }
 
     /// The members of a constraint with their elements.
@@ -280,68 +253,21 @@ impl Compiler<'_> {
         target: MemberObject,
         role: Role,
     ) -> Option<Member> {
-        let (faces, points) = match target {
-            // The elements of a mesh that can tear are numbered as it was given.
-            MemberObject::Cloth(cloth) => match &self.program.cloths[cloth.index()].tearing {
-                Some(tearing) => (tearing.faces.clone(), tearing.points),
-                None => {
-                    let surface = &self.program.model.cloths()[cloth.index()].surface;
-                    (surface.faces.clone(), surface.positions.len())
-                }
-            },
-            MemberObject::Collider(collider) => {
-                let surface = &self.program.model.colliders()[collider.index()].surface;
-                (surface.faces.clone(), surface.positions.len())
-            }
-        };
-        let graph = &self.scene.graph;
-        let mesh = graph.source(object, &n_base::INPUT_MESH).unwrap_or(object);
-        let of = Selected { owner: constraint, object, mesh };
+        let (faces, points) = self.given_mesh(target);
+        let mesh = self.scene.graph.source(object, &n_base::INPUT_MESH).unwrap_or(object);
         let elements = Elements::new(&faces, points);
-        let node = graph.node(component);
-        let is_whole = node.get(&n_component::COMPONENT_TYPE) == n_component::OBJECT;
-        let is_border = node.get(&n_component::ELEMENTS) == n_component::BORDERS;
-        let border = elements.border(ElementKind::Edge);
-        let (kind, chosen) = match role {
-            Role::Surface if is_whole && !faces.is_empty() => {
-                (ElementKind::Face, (0..faces.len() as u32).collect())
-            }
-            // A closed object has no border: its points are welded.
-            Role::Border if (is_whole || is_border) && !border.is_empty() => (ElementKind::Edge, border),
-            _ => self.selected(&of, component, &elements),
-        };
-        let [owner, named] = [constraint, object].map(|id| self.scene.graph.node(id).name().to_owned());
+        let (kind, chosen) =
+            self.elements_of_role(&Selected { owner: constraint, object, mesh }, component, &elements, role);
         let spans = match role {
             Role::Border if kind != ElementKind::Edge => elements.spans(),
             _ => Vec::new(),
         };
-        let corners: BTreeSet<u32> = chosen.iter().flat_map(|at| elements.corners(kind, *at)).collect();
-        let selection = NamedSelection {
-            owner,
-            object: named,
-            kind,
-            elements: chosen.clone(),
-            points: corners.into_iter().collect(),
-        };
-        self.program.selections.push(selection);
+        self.name_selection([constraint, object], &elements, kind, &chosen);
         if chosen.is_empty() {
             return None;
         }
-        let mut all = Faces::default();
-        let tearing = match target {
-            MemberObject::Cloth(cloth) => self.program.cloths[cloth.index()].tearing.as_ref(),
-            MemberObject::Collider(_) => None,
-        };
-        for &at in &chosen {
-            match tearing.filter(|_| kind == ElementKind::Face) {
-                Some(tearing) => all.push(tearing.split_faces().face(at as usize)),
-                None => all.push(&elements.corners(kind, at)),
-            }
-        }
-        // Points that were split are all of their twins.
-        if let Some(tearing) = tearing.filter(|_| kind == ElementKind::Point) {
-            tearing.twins_of(&chosen).into_iter().for_each(|twin| all.push(&[twin]));
-        }
+        let tearing = self.tearing_of(target);
+        let all = solver_elements(tearing, &elements, kind, &chosen);
         let twins = tearing.map(|tearing| tearing.twins.clone()).unwrap_or_default();
         let number = |key| self.start.get(component, key);
         let scalars = [
@@ -351,15 +277,14 @@ impl Compiler<'_> {
             number(&n_component::WEIGHT),
         ];
         let maps = [&STRENGTH, &GLUE, &WEIGHT].map(|map| {
-            let map_of = MapOfCloth { cloth: component, mesh, points, map };
-            let mut values = self.map_values(&map_of).unwrap_or_default();
+            let mut values =
+                self.map_values(&MapOfCloth { cloth: component, mesh, points, map }).unwrap_or_default();
             if !values.is_empty() {
                 let more: Vec<f64> = twins.iter().map(|&twin| values[twin as usize]).collect();
                 values.extend(more);
             }
             values
         });
-        let name = self.scene.graph.node(object).name().to_owned();
         let behind = match kind {
             ElementKind::Edge => chosen.iter().map(|&at| elements.behind(at)).collect(),
             _ => Vec::new(),
@@ -373,9 +298,90 @@ impl Compiler<'_> {
             sheet: Faces::default(),
             scalars,
             maps,
-            name,
+            name: self.scene.graph.node(object).name().to_owned(),
         })
     }
+
+    /// The faces and the number of points of an object as it was given: the elements of a mesh that can tear are numbered so.
+    fn given_mesh(&self, target: MemberObject) -> (Faces, usize) {
+        if let Some(tearing) = self.tearing_of(target) {
+            return (tearing.faces.clone(), tearing.points);
+        }
+        let surface = match target {
+            MemberObject::Cloth(cloth) => &self.program.model.cloths()[cloth.index()].surface,
+            MemberObject::Collider(collider) => &self.program.model.colliders()[collider.index()].surface,
+        };
+        (surface.faces.clone(), surface.positions.len())
+    }
+
+    fn tearing_of(&self, target: MemberObject) -> Option<&Tearing> {
+        match target {
+            MemberObject::Cloth(cloth) => self.program.cloths[cloth.index()].tearing.as_ref(),
+            MemberObject::Collider(_) => None,
+        }
+    }
+
+    /// The elements that a component stands for in its role.
+    fn elements_of_role(
+        &mut self,
+        of: &Selected,
+        component: NodeId,
+        elements: &Elements<'_>,
+        role: Role,
+    ) -> (ElementKind, Vec<u32>) {
+        let node = self.scene.graph.node(component);
+        let is_whole = node.get(&n_component::COMPONENT_TYPE) == n_component::OBJECT;
+        let is_border = node.get(&n_component::ELEMENTS) == n_component::BORDERS;
+        let border = elements.border(ElementKind::Edge);
+        let faces = elements.faces.len() as u32;
+        match role {
+            Role::Surface if is_whole && faces > 0 => (ElementKind::Face, (0..faces).collect()),
+            // A closed object has no border: its points are welded.
+            Role::Border if (is_whole || is_border) && !border.is_empty() => (ElementKind::Edge, border),
+            _ => self.selected(of, component, elements),
+        }
+    }
+
+    /// Records the elements of an object that a constraint names.
+    fn name_selection(
+        &mut self,
+        [constraint, object]: [NodeId; 2],
+        elements: &Elements<'_>,
+        kind: ElementKind,
+        chosen: &[u32],
+    ) {
+        let [owner, object] = [constraint, object].map(|id| self.scene.graph.node(id).name().to_owned());
+        let corners: BTreeSet<u32> = chosen.iter().flat_map(|at| elements.corners(kind, *at)).collect();
+        let points = corners.into_iter().collect();
+        self.program.selections.push(NamedSelection {
+            owner,
+            object,
+            kind,
+            elements: chosen.to_vec(),
+            points,
+        });
+    }
+}
+
+/// Elements as the solver has them: those of a mesh that can tear have its twins.
+fn solver_elements(
+    tearing: Option<&Tearing>,
+    elements: &Elements<'_>,
+    kind: ElementKind,
+    chosen: &[u32],
+) -> Faces {
+    let mut all = Faces::default();
+    for &at in chosen {
+        match tearing.filter(|_| kind == ElementKind::Face) {
+            Some(tearing) => all.push(tearing.split_faces().face(at as usize)),
+            None => all.push(&elements.corners(kind, at)),
+        }
+    }
+    // Points that were split are all of their twins.
+    if let Some(tearing) = tearing.filter(|_| kind == ElementKind::Point) {
+        tearing.twins_of(chosen).into_iter().for_each(|twin| all.push(&[twin]));
+    }
+    all
 }
 
 /// The part that a component plays in its constraint.
@@ -399,6 +405,38 @@ fn with_twins(mut spans: Vec<[u32; 2]>, points: usize, twins: &[u32]) -> Vec<[u3
         spans.extend(own);
     }
     spans
+}
+
+/// Why a constraint cannot join its members, and what helps.
+fn problem_of(values: &Values<'_>, members: &[Member]) -> Option<(&'static str, &'static str)> {
+    let (kind, relation) = (values.kind, values.choice(&con::CONSTRAINT_RELATION));
+    let within = values.toggle(&con::CONNECT_WITHIN_COMPONENT);
+    let is_passive = |member: &Member| matches!(member.object, MemberObject::Collider(_));
+    let objects: BTreeSet<_> = members.iter().map(|member| member.object.key()).collect();
+    let needs_two = matches!(
+        kind,
+        kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE | kinds::MATCH | kinds::EXCLUDE_PAIRS
+    );
+    let surface_first = matches!(kind, kinds::POINT_TO_SURFACE | kinds::SLIDE_ON_SURFACE);
+    let all_passive = members.iter().all(is_passive) && kind != kinds::DISABLE_COLLISION;
+    if all_passive {
+        Some(("joins only passive objects, which nothing moves", "name a part of a cloth or of particles"))
+    } else if needs_two && members.len() < 2 {
+        Some(("has one member, and this kind joins two", "name parts of both objects in `components`"))
+    } else if surface_first && members[0].kind != ElementKind::Face {
+        Some((
+            "needs a surface as its first component",
+            "name the surface first: a whole object, or faces (`cloth1.f[*]`)",
+        ))
+    } else if kind == kinds::SLIDE_ON_SURFACE && objects.len() < 2 {
+        Some(("slides an object on itself", "name another object first"))
+    } else if kind == kinds::MATCH && members[0].points().len() != members[1].points().len() {
+        Some(("matches objects of different numbers of points", "both meshes need the same points"))
+    } else if relation == 1 && members.len() == 1 && !within && !joins_itself(kind) {
+        Some(("joins a component to itself", "name another component, or set `connectWithinComponent: true`"))
+    } else {
+        None
+    }
 }
 
 /// Whether a kind joins the elements of one component with each other.
