@@ -111,8 +111,8 @@ fn set_capacities(builder: &mut ModelBuilder, capacities: &[u64], bytes: usize) 
 /// Stores everything but the pairs. It names every field, so a new one does not compile until it is stored or named as
 /// rebuilt.
 fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
-    // A liquid begins every frame anew, and tethers follow from the pins of a frame.
-    let Solver { model: _, state, contact, links, liquids: _, tethers: _, pool: _ } = solver;
+    // A liquid begins every frame anew, tethers follow from the pins of a frame, and surfaces are scratch memory.
+    let Solver { model: _, state, contact, links, liquids: _, tethers: _, surfaces: _, pool: _ } = solver;
     // The ignored fields are rebuilt, or every frame writes them before it reads them.
     let ContactSystem {
         collider_states,

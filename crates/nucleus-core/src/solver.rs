@@ -8,6 +8,7 @@ use crate::constraints::link::sizes::ModelSizes;
 use crate::constraints::liquid::LiquidSolver;
 use crate::constraints::tether::Tethers;
 use crate::constraints::whole;
+use crate::contact::placed_surface::ObjectSurfaces;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, ResistanceModel};
@@ -44,6 +45,8 @@ pub struct Solver<R: Real = f32> {
     pub(crate) liquids: Vec<LiquidSolver>,
     /// By cloth: its tethers; empty where none has any.
     pub(crate) tethers: Vec<Tethers<R>>,
+    /// Surfaces of objects that act on others at a distance.
+    pub(crate) surfaces: ObjectSurfaces,
     pub(crate) pool: ThreadPool,
 }
 
@@ -160,7 +163,8 @@ impl<R: Real> Solver<R> {
         }
         let model = Model { cloths: models, colliders };
         let links = Links::new(&model.cloths);
-        let mut solver = Self { model, state, contact, links, liquids, tethers, pool };
+        let surfaces = ObjectSurfaces::default();
+        let mut solver = Self { model, state, contact, links, liquids, tethers, surfaces, pool };
         update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
         solver
     }

@@ -195,13 +195,14 @@ fn begin_substep<R: CompiledReal>(
     update_normals(&solver.model.cloths, &mut solver.state, frame.resistance, &solver.pool);
     let time = f64::from(substep - 1) / f64::from(schedule.substeps);
     let start = PassTime { at: time, length: frame.duration / f64::from(schedule.substeps) };
-    let Solver { model, state, contact, links, pool, .. } = solver;
+    let Solver { model, state, contact, links, surfaces, pool, .. } = solver;
     let objects =
         Objects { cloths: &model.cloths, colliders: (&model.colliders, &contact.collider_states), time };
-    update_local_wind(&objects, state, frame, pool);
+    update_local_wind(&objects, state, surfaces, frame, pool);
     push_out(model, state, contact, frame, time);
-    apply_force_fields(model, state, &contact.collider_states, frame, start);
-    apply_point_fields(model, state, &contact.collider_states, frame, start);
+    let scene = (&*model, &contact.collider_states[..]);
+    apply_force_fields(scene, state, surfaces, frame, start, pool);
+    apply_point_fields(scene, state, frame, start, pool);
     apply_link_forces(links, (model, &contact.collider_states), state, frame, start);
     if substep == 1 || frame.fields_per_substep {
         let interval = if frame.fields_per_substep { start.length } else { frame.duration };

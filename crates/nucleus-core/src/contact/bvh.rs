@@ -3,6 +3,8 @@
 //! The hierarchy is built once, by splitting the elements at the median along their longest side, four to a leaf.
 //! A moving object only refits it. Nodes stand in heap order: the children of node k are 2k + 1 and 2k + 2.
 
+use std::cell::Cell;
+
 use nalgebra::Vector3;
 
 use crate::bytes::{checkpoint_struct, encode_struct};
@@ -99,24 +101,14 @@ impl Aabb {
         [self.low, self.high]
     }
 
-    /// Whether the box meets the part of a ray up to the share `end` of its length (slab test, Kay and Kajiya 1986).
-    pub fn meets_ray(&self, from: Vector3<f64>, ray: Vector3<f64>, end: f64) -> bool {
-        let (mut first, mut last) = (0.0f64, end);
-        for k in 0..3 {
-            let [low, high] = [self.low[k], self.high[k]].map(|side| f64::from(side) - from[k]);
-            if low > high {
-                return false; // the empty box
-            }
-            if ray[k] == 0.0 {
-                if low > 0.0 || high < 0.0 {
-                    return false;
-                }
-            } else {
-                let [a, b] = [low / ray[k], high / ray[k]];
-                (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
-            }
-        }
-        first <= last
+    /// The squared distance of a place from the box in m²; infinite for the empty box.
+    pub fn squared_distance(&self, place: Vector3<f64>) -> f64 {
+        let outside = |k: usize| {
+            let (below, above) = (f64::from(self.low[k]) - place[k], place[k] - f64::from(self.high[k]));
+            below.max(above).max(0.0)
+        };
+        let [x, y, z] = [outside(0), outside(1), outside(2)];
+        x * x + y * y + z * z
     }
 
     /// Whether two boxes have a point in common.
@@ -131,6 +123,45 @@ impl Aabb {
 }
 
 encode_struct!([] Aabb { low: [f32; 4], high: [f32; 4] });
+
+/// Parallel rays of one length that start in a box.
+#[derive(Debug, Clone, Copy)]
+pub struct RayBundle {
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+    /// One over the ray; infinite along an axis that it does not move along.
+    inverse: Vector3<f64>,
+}
+
+impl RayBundle {
+    /// The rays from the box between two corners.
+    pub fn new([low, high]: [Vector3<f64>; 2], ray: Vector3<f64>) -> Self {
+        Self { low, high, inverse: ray.map(|x| 1.0 / x) }
+    }
+
+    /// A lower bound of the share of its length after which a ray of the bundle is in a box: the slab test of a single ray
+    /// (Kay and Kajiya 1986) with the box enlarged by that of the origins. Infinite where all rays miss it.
+    pub fn entry(&self, bounds: &Aabb) -> f64 {
+        let (mut first, mut last) = (0.0f64, 1.0f64);
+        for k in 0..3 {
+            let low = f64::from(bounds.low[k]) - self.high[k];
+            let high = f64::from(bounds.high[k]) - self.low[k];
+            if low > high {
+                return f64::INFINITY; // the empty box
+            }
+            if self.inverse[k].is_infinite() {
+                if low > 0.0 || high < 0.0 {
+                    return f64::INFINITY;
+                }
+            } else {
+                let [a, b] = [low * self.inverse[k], high * self.inverse[k]];
+                (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+            }
+        }
+        // Both are rounded; the boxes have room for it except at their very corners.
+        if first <= last + 1e-12 { first } else { f64::INFINITY }
+    }
+}
 
 /// The boxes of an element at the start and at the end of linear motion.
 pub type SweptBox = [Aabb; 2];
@@ -159,6 +190,12 @@ impl Bvh {
         let triangles = by_halves(centres, LEAF_SIZE);
         let leaves = triangles.len().div_ceil(LEAF_SIZE).next_power_of_two();
         Self { triangles, nodes: vec![Aabb::EMPTY; 2 * leaves - 1], leaves }
+    }
+
+    /// A hierarchy over elements of which those with close indices are close in space.
+    pub fn in_order(count: usize) -> Self {
+        let leaves = count.div_ceil(LEAF_SIZE).next_power_of_two();
+        Self { triangles: (0..count as u32).collect(), nodes: vec![Aabb::EMPTY; 2 * leaves - 1], leaves }
     }
 
     /// Whether it holds each of `triangles` elements exactly once.
@@ -300,6 +337,29 @@ impl Bvh {
             }
         }
     }
+
+    /// Calls `found` with each element of the leaves that `bound` puts within `limit`, the nearer child of a node first.
+    /// `found` may lower the limit. The bound of a box is at most that of any box inside.
+    pub fn descend_by(&self, bound: impl Fn(&Aabb) -> f64, limit: &Cell<f64>, mut found: impl FnMut(u32)) {
+        let mut stack = [(0usize, 0.0f64); 64];
+        stack[0].1 = bound(&self.nodes[0]);
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let (node, own) = stack[depth];
+            if own > limit.get() || own.is_nan() {
+                continue;
+            }
+            if node >= self.leaves - 1 {
+                self.leaf(node).iter().for_each(|&triangle| found(triangle));
+                continue;
+            }
+            let [left, right] = [2 * node + 1, 2 * node + 2].map(|child| (child, bound(&self.nodes[child])));
+            let (nearer, farther) = if left.1 <= right.1 { (left, right) } else { (right, left) };
+            (stack[depth], stack[depth + 1]) = (farther, nearer);
+            depth += 2;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -316,20 +376,34 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_ray_meets_the_boxes_that_hold_one_of_its_points(corners in boxes(), target in 0usize..100, at in 0.0..1.0f64) {
+        fn rays_enter_a_box_no_later_than_at_one_of_its_points(corners in boxes(), target in 0usize..100, at in 0.0..1.0f64) {
             let [low, high] = corners[target % corners.len()];
             let bounds = Aabb::new(low, high);
-            let (from, through) = (corners[0][0], low + (high - low) * at);
-            let ray = through - from;
-            prop_assert!(!Aabb::EMPTY.meets_ray(from, ray, 1.0));
-            prop_assert!(bounds.meets_ray(from, ray, 1.0 + 1e-9));
-            // Halfway to a box that lies wholly behind a plane across the ray, nothing is met.
-            let nearest = (0..8).map(|k| ray.dot(&(Vector3::from_fn(|axis, _| if k >> axis & 1 == 0 { low } else { high }[axis]) - from)));
+            let (origins, through) = (corners[0], low + (high - low) * at);
+            let ray = through - origins[1];
+            let one = RayBundle::new([origins[1]; 2], ray);
+            prop_assert!(one.entry(&Aabb::EMPTY) == f64::INFINITY);
+            // The last one ends at a point of the box; all of the bundle start no farther from it than their own box reaches.
+            prop_assert!(one.entry(&bounds) <= 1.0 && RayBundle::new(origins, ray).entry(&bounds) <= one.entry(&bounds));
+            // A box that lies wholly behind a plane across the ray is not entered before it.
+            let nearest = (0..8).map(|k| ray.dot(&(Vector3::from_fn(|axis, _| if k >> axis & 1 == 0 { low } else { high }[axis]) - origins[1])));
             let share = nearest.fold(f64::INFINITY, f64::min) / ray.norm_squared();
             if share > 0.01 {
-                prop_assert!(!bounds.meets_ray(from, ray, 0.99 * share));
-                prop_assert!(!bounds.meets_ray(from, -ray, 1.0));
+                prop_assert!(RayBundle::new([origins[1]; 2], ray * (0.99 * share)).entry(&bounds) == f64::INFINITY);
+                prop_assert!(RayBundle::new([origins[1]; 2], -ray).entry(&bounds) == f64::INFINITY);
             }
+        }
+
+        #[test]
+        fn the_nearest_element_is_found_in_boxes_ordered_by_distance(corners in boxes(), place in proptest::array::uniform3(-7.0..7.0f64)) {
+            let place = Vector3::from(place);
+            let boxes: Vec<Aabb> = corners.iter().map(|&[low, high]| Aabb::new(low, high)).collect();
+            let mut bvh = Bvh::new(&corners.iter().map(|[low, high]| (low + high) / 2.0).collect::<Vec<_>>());
+            bvh.refit(|at| boxes[at]);
+            let distance = |at: usize| boxes[at].squared_distance(place);
+            let limit = Cell::new(f64::INFINITY);
+            bvh.descend_by(|bounds| bounds.squared_distance(place), &limit, |at| limit.set(limit.get().min(distance(at as usize))));
+            prop_assert_eq!(limit.get(), (0..boxes.len()).map(distance).fold(f64::INFINITY, f64::min));
         }
 
         #[test]

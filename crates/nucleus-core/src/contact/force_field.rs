@@ -6,11 +6,13 @@
 use nalgebra::Vector3;
 
 use crate::contact::collider::ColliderState;
-use crate::contact::placed_surface::{Nearest, PlacedSurface};
+use crate::contact::placed_surface::{Nearest, ObjectAt, ObjectSurfaces, PlacedSurface};
 use crate::input::frame::{FieldSide, ForceField, FrameInput};
 use crate::input::samples::sample_at;
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
+use crate::parallel::disjoint::DisjointSlice;
+use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::PassTime;
 use crate::state::State;
 
@@ -35,56 +37,89 @@ impl ForceField {
 
 /// Accelerates points in the fields of other objects for a substep that begins at a time.
 pub fn apply_force_fields<R: Real>(
-    model: &Model<R>,
+    (model, colliders): (&Model<R>, &[ColliderState]),
     state: &mut State<R>,
-    colliders: &[ColliderState],
+    surfaces: &mut ObjectSurfaces,
     frame: &FrameInput,
     PassTime { at: time, length }: PassTime,
+    pool: &ThreadPool,
 ) {
-    for at in 0..model.colliders.len() {
-        let Some(field) = frame.colliders[at].field.filter(ForceField::is_on) else { continue };
-        let (placed, collider) = (&colliders[at], &model.colliders[at]);
-        let triangles = collider.boundary.triangles.clone();
-        let surface = PlacedSurface::new(triangles, |point| placed.point(point, time));
+    for (index, (collider, placed)) in model.colliders.iter().zip(colliders).enumerate() {
+        let Some(field) = frame.colliders[index].field.filter(ForceField::is_on) else { continue };
+        let at = ObjectAt::Collider(index);
+        let place = |point| placed.point(point, time);
+        surfaces.place(at, || collider.boundary.triangles.clone(), place, pool);
+        let Some(surface) = surfaces.get(at) else { continue };
         let source = Source { field, surface, map: &collider.field_map };
-        model.cloths.iter().for_each(|cloth| source.accelerate(cloth, state, length));
+        model.cloths.iter().for_each(|cloth| source.accelerate(cloth, state, length, pool));
     }
-    for at in 0..model.cloths.len() {
-        let Some(field) = frame.cloths[at].field.filter(ForceField::is_on) else { continue };
-        let cloth = &model.cloths[at];
-        let first = cloth.points().start;
+    for (index, cloth) in model.cloths.iter().enumerate() {
+        let Some(field) = frame.cloths[index].field.filter(ForceField::is_on) else { continue };
+        let is_alone = model.cloths.len() == 1;
+        if is_alone || cloth.boundary.triangles.is_empty() {
+            continue;
+        }
+        let at = ObjectAt::Cloth(index);
         // Corners are counted from the cloth's first row, as its map is.
-        let triangles = cloth.boundary.triangles.iter().map(|face| face.map(|row| row - first)).collect();
-        let surface = PlacedSurface::new(triangles, |corner| state.position(first + corner).into());
+        let first = cloth.points().start;
+        let place = |corner: u32| Point::from(state.position(first + corner));
+        surfaces.place(at, || cloth.corner_triangles(), place, pool);
+        let Some(surface) = surfaces.get(at) else { continue };
         let source = Source { field, surface, map: &cloth.field_map };
-        let others = (0..model.cloths.len()).filter(|&cloth| cloth != at);
-        others.for_each(|cloth| source.accelerate(&model.cloths[cloth], state, length));
+        let others = (0..model.cloths.len()).filter(|&other| other != index);
+        others.for_each(|other| source.accelerate(&model.cloths[other], state, length, pool));
     }
 }
 
 /// The field of one object at its present position.
 struct Source<'a> {
     field: ForceField,
-    surface: PlacedSurface,
+    surface: &'a PlacedSurface,
     /// Factors on the magnitude by corner; empty where they are 1.
     map: &'a [f64],
 }
 
 impl Source<'_> {
     /// Accelerates the free points of a cloth for a substep of `length` seconds.
-    fn accelerate<R: Real>(&self, cloth: &ClothModel<R>, state: &mut State<R>, length: f64) {
-        for row in cloth.points() {
-            if state.displacement[row as usize].0[3] <= R::ZERO {
+    fn accelerate<R: Real>(
+        &self,
+        cloth: &ClothModel<R>,
+        state: &mut State<R>,
+        length: f64,
+        pool: &ThreadPool,
+    ) {
+        kick_points(cloth, state, pool, |_, place| {
+            Some(self.field.acceleration(self.surface, self.map, place)? * length)
+        });
+    }
+}
+
+/// Adds to the velocity of each free point of a cloth, in m/s, by its row and its position in metres.
+pub fn kick_points<R: Real>(
+    cloth: &ClothModel<R>,
+    state: &mut State<R>,
+    pool: &ThreadPool,
+    kick: impl Fn(u32, Point) -> Option<Point> + Sync,
+) {
+    let State { anchor, displacement, velocity, .. } = state;
+    let velocity = DisjointSlice::new(velocity);
+    pool.parallel_for(cloth.blocks.len(), |block| {
+        let rows = cloth.blocks.range(block);
+        // SAFETY: blocks do not overlap.
+        #[allow(unsafe_code)]
+        let run = unsafe { velocity.run(rows.clone()) };
+        for (row, velocity) in rows.zip(run) {
+            let moved = displacement[row as usize].0;
+            if moved[3] <= R::ZERO {
                 continue;
             }
-            let place = Point::from(state.position(row));
-            let Some(acceleration) = self.field.acceleration(&self.surface, self.map, place) else {
-                continue;
-            };
-            let velocity = &mut state.velocity[row as usize];
-            (0..3).for_each(|axis| velocity.0[axis] += R::from_f64(acceleration[axis] * length));
+            let place = anchor[row as usize];
+            let place = Point::from(std::array::from_fn(|axis| place[axis] + moved[axis].to_f64()));
+            if let Some(change) = kick(row, place) {
+                (0..3).for_each(|axis| velocity.0[axis] += R::from_f64(change[axis]));
+            }
         }
-    }
+    });
 }
 
 #[cfg(test)]

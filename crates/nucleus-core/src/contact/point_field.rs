@@ -9,12 +9,13 @@ use nalgebra::Vector3;
 
 use crate::contact::bvh::{Aabb, Bvh};
 use crate::contact::collider::ColliderState;
+use crate::contact::force_field::kick_points;
 use crate::input::frame::FrameInput;
 use crate::input::object_fields::PointField;
 use crate::input::samples::sample_at;
 use crate::math::Real;
 use crate::model::{ClothModel, Model};
-use crate::particles::population::Population;
+use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::PassTime;
 use crate::state::State;
 
@@ -31,11 +32,17 @@ struct Sources {
 }
 
 impl Sources {
-    fn new(field: PointField, points: Vec<Point>, factors: &[f32]) -> Self {
+    /// The boxes of `bvh` are those of the points.
+    fn new(
+        field: PointField,
+        points: Vec<Point>,
+        factors: Vec<f32>,
+        mut bvh: Bvh,
+        pool: &ThreadPool,
+    ) -> Self {
         let origin = points.first().copied().unwrap_or_default();
-        let mut bvh = Bvh::new(&points);
-        bvh.refit(|at| Aabb::of(std::iter::once(points[at] - origin)));
-        Self { field, points, factors: factors.to_vec(), bvh, origin }
+        bvh.refit_in_tasks(|at| Aabb::of(std::iter::once(points[at] - origin)), pool);
+        Self { field, points, factors, bvh, origin }
     }
 
     /// The sum over all sources but `own` of the falloff along the direction away from each.
@@ -58,60 +65,69 @@ impl Sources {
 
 /// Accelerates points in the fields of points for a substep that begins at a time.
 pub fn apply_point_fields<R: Real>(
-    model: &Model<R>,
+    (model, colliders): (&Model<R>, &[ColliderState]),
     state: &mut State<R>,
-    colliders: &[ColliderState],
     frame: &FrameInput,
     PassTime { at: time, length }: PassTime,
+    pool: &ThreadPool,
 ) {
     for (placed, settings) in colliders.iter().zip(&frame.colliders) {
         let Some(field) = settings.point_field.filter(PointField::is_on) else { continue };
-        let points = (0..placed.start.len() as u32).map(|point| placed.point(point, time)).collect();
-        let sources = Sources::new(field, points, &[]);
-        model.cloths.iter().for_each(|cloth| accelerate(cloth, state, &sources, length));
+        let points: Vec<Point> =
+            (0..placed.start.len() as u32).map(|point| placed.point(point, time)).collect();
+        let bvh = Bvh::new(&points);
+        let sources = Sources::new(field, points, Vec::new(), bvh, pool);
+        model.cloths.iter().for_each(|cloth| accelerate(cloth, state, &sources, length, pool));
     }
-    for at in 0..model.cloths.len() {
+    for (at, cloth) in model.cloths.iter().enumerate() {
         let Some(field) = frame.cloths[at].point_field.filter(PointField::is_on) else { continue };
-        let rows = model.cloths[at].points();
-        let factors = state.population_of(at).map_or(&[][..], Population::field_factors);
-        let sources = Sources::new(field, rows.map(|row| state.position(row).into()).collect(), factors);
+        let factors = state.population_of(at).map_or_else(Vec::new, |own| own.field_factors().to_vec());
+        let points: Vec<Point> = cloth.points().map(|row| state.position(row).into()).collect();
+        // The points of a mesh are in the order of a curve through it, and stay neighbours; particles mix.
+        let bvh = if cloth.has_faces { Bvh::in_order(points.len()) } else { Bvh::new(&points) };
+        let sources = Sources::new(field, points, factors, bvh, pool);
         if field.self_attract != 0.0 {
-            attract(&model.cloths[at], state, &sources, length);
+            attract(cloth, state, &sources, length, pool);
         }
-        let others = (0..model.cloths.len()).filter(|&cloth| cloth != at);
-        others.for_each(|cloth| accelerate(&model.cloths[cloth], state, &sources, length));
+        let others = (0..model.cloths.len()).filter(|&other| other != at);
+        others.for_each(|other| accelerate(&model.cloths[other], state, &sources, length, pool));
     }
 }
 
-fn accelerate<R: Real>(cloth: &ClothModel<R>, state: &mut State<R>, sources: &Sources, length: f64) {
-    if sources.field.magnitude == 0.0 {
-        return;
-    }
-    for row in cloth.points() {
-        let push = sources.push(state.position(row).into(), None);
-        kick(state, row, push * (sources.field.magnitude * length));
+fn accelerate<R: Real>(
+    cloth: &ClothModel<R>,
+    state: &mut State<R>,
+    sources: &Sources,
+    length: f64,
+    pool: &ThreadPool,
+) {
+    if sources.field.magnitude != 0.0 {
+        kick_points(cloth, state, pool, |_, place| {
+            Some(sources.push(place, None) * (sources.field.magnitude * length))
+        });
     }
 }
 
 /// Pulls the points of one object together. The force between two is the acceleration times the harmonic mean of the
 /// object's masses.
-fn attract<R: Real>(cloth: &ClothModel<R>, state: &mut State<R>, sources: &Sources, length: f64) {
+fn attract<R: Real>(
+    cloth: &ClothModel<R>,
+    state: &mut State<R>,
+    sources: &Sources,
+    length: f64,
+    pool: &ThreadPool,
+) {
     let rows = cloth.points();
     let count = rows.len().max(1) as f64;
-    let mean = rows.clone().map(|row| state.inverse_mass[row as usize].to_f64()).sum::<f64>() / count;
-    for (own, row) in rows.enumerate() {
+    let inverse_mass = std::mem::take(&mut state.inverse_mass);
+    let mean = rows.clone().map(|row| inverse_mass[row as usize].to_f64()).sum::<f64>() / count;
+    kick_points(cloth, state, pool, |row, place| {
+        let own = (row - rows.start) as usize;
         // The product of both factors is the same for both sides.
         let factor = sources.factors.get(own).map_or(1.0, |&factor| f64::from(factor));
-        let push = sources.push(sources.points[own], Some(own)) * factor;
-        let share = state.inverse_mass[row as usize].to_f64() / mean;
-        kick(state, row, push * (-sources.field.self_attract * length * share));
-    }
-}
-
-/// Changes the velocity of a point that is not pinned.
-fn kick<R: Real>(state: &mut State<R>, row: u32, change: Point) {
-    if state.displacement[row as usize].0[3] > R::ZERO {
-        let velocity = &mut state.velocity[row as usize];
-        (0..3).for_each(|axis| velocity.0[axis] += R::from_f64(change[axis]));
-    }
+        let push = sources.push(place, Some(own)) * factor;
+        let share = inverse_mass[row as usize].to_f64() / mean;
+        Some(push * (-sources.field.self_attract * length * share))
+    });
+    state.inverse_mass = inverse_mass;
 }

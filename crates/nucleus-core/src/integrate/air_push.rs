@@ -12,10 +12,10 @@ use crate::contact::placed_surface::PlacedSurface;
 use crate::input::object_fields::WindField;
 
 /// The air around one object.
-pub struct AirPush {
+pub struct AirPush<'a> {
     /// The index of the cloth, on which its own air does not act.
     pub cloth: Option<usize>,
-    surface: PlacedSurface,
+    surface: &'a PlacedSurface,
     /// By corner of the surface, in m/s.
     velocity: Vec<Vector3<f64>>,
     /// In metres.
@@ -23,10 +23,10 @@ pub struct AirPush {
     vorticity: f64,
 }
 
-impl AirPush {
+impl<'a> AirPush<'a> {
     /// The air around a surface whose corners have these velocities.
     pub fn new(
-        surface: PlacedSurface,
+        surface: &'a PlacedSurface,
         settings: &WindField,
         cloth: Option<usize>,
         velocity: Vec<Vector3<f64>>,

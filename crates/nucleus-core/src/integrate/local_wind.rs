@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 
 use crate::contact::collider::ColliderState;
-use crate::contact::placed_surface::PlacedSurface;
+use crate::contact::placed_surface::{ObjectAt, ObjectSurfaces, PlacedSurface, RAYS};
 use crate::input::frame::{ClothFrame, FrameInput};
 use crate::input::object_fields::WindField;
 use crate::integrate::air_push::AirPush;
@@ -36,6 +36,7 @@ pub fn feels_wind<R>(cloth: &ClothModel<R>, settings: &ClothFrame) -> bool {
 pub fn update_local_wind<R: Real>(
     objects: &Objects<'_, R>,
     state: &mut State<R>,
+    surfaces: &mut ObjectSurfaces,
     frame: &FrameInput,
     pool: &ThreadPool,
 ) {
@@ -44,83 +45,135 @@ pub fn update_local_wind<R: Real>(
         return;
     }
     let gusts = is_gusty(frame).then(|| GustField::new(state.wind_travel, frame, objects.time));
-    let shadows = surfaces(objects, state, frame, WindField::casts_shadow, |surface, settings, cloth, _| {
-        WindShadow::new(surface, settings, cloth, frame.wind)
-    });
-    let pushes = surfaces(objects, state, frame, WindField::pushes_air, AirPush::new);
-    if gusts.is_none() && shadows.is_empty() && pushes.is_empty() {
+    let sources = place_sources(objects, state, surfaces, frame, pool);
+    if gusts.is_none() && sources.is_empty() {
         return;
     }
+    let placed = || sources.iter().filter_map(|source| Some((source, surfaces.get(source.at)?)));
+    let shadows: Vec<WindShadow<'_>> = placed()
+        .filter(|(source, _)| source.settings.casts_shadow())
+        .map(|(source, surface)| WindShadow::new(surface, source.settings, source.cloth(), frame.wind))
+        .collect();
+    let pushes: Vec<AirPush<'_>> = placed()
+        .filter(|(source, _)| source.settings.pushes_air())
+        .map(|(source, surface)| {
+            let velocity = corner_velocities(source, objects, state, frame);
+            AirPush::new(surface, source.settings, source.cloth(), velocity)
+        })
+        .collect();
     state.added_wind.resize(state.normal.len(), Row4::ZERO);
     let State { anchor, displacement, added_wind, .. } = state;
+    let place = |row: u32| {
+        let moved = displacement[row as usize].xyz().map(R::to_f64);
+        Vector3::from(anchor[row as usize]) + Vector3::from(moved)
+    };
     let added = DisjointSlice::new(added_wind);
     for (at, (cloth, settings)) in objects.cloths.iter().zip(&frame.cloths).enumerate() {
         if !feels_wind(cloth, settings) {
             continue;
         }
+        let first = cloth.points().start;
         pool.parallel_for(cloth.blocks.len(), |block| {
             let rows = cloth.blocks.range(block);
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
             let run = unsafe { added.run(rows.clone()) };
-            let first = cloth.points().start;
-            for (row, added) in rows.zip(run) {
-                let moved = displacement[row as usize].xyz().map(R::to_f64);
-                let place = Vector3::from(anchor[row as usize]) + Vector3::from(moved);
-                let mut wind = frame.wind;
-                wind += gusts.as_ref().map_or(Vector3::zeros(), |gusts| gusts.at(place));
-                wind *= shadows
+            for (start, run) in rows.step_by(RAYS).zip(run.chunks_mut(RAYS)) {
+                let mut places = [Vector3::zeros(); RAYS];
+                let places = &mut places[..run.len()];
+                (start..).zip(&mut *places).for_each(|(row, own)| *own = place(row));
+                let mut shares = [1.0; RAYS];
+                shadows
                     .iter()
-                    .map(|shadow| shadow.share(place, [at as u32, row - first]))
-                    .product::<f64>();
-                for push in pushes.iter().filter(|push| push.cloth != Some(at)) {
-                    wind = push.blend(wind, place);
+                    .for_each(|shadow| shadow.shade(places, [at as u32, start - first], &mut shares));
+                for ((place, share), added) in places.iter().zip(shares).zip(run) {
+                    let mut wind = frame.wind;
+                    wind += gusts.as_ref().map_or(Vector3::zeros(), |gusts| gusts.at(*place));
+                    wind *= share;
+                    for push in pushes.iter().filter(|push| push.cloth != Some(at)) {
+                        wind = push.blend(wind, *place);
+                    }
+                    *added = Row4::new((wind - frame.wind).into(), R::ZERO);
                 }
-                *added = Row4::new((wind - frame.wind).into(), R::ZERO);
             }
         });
     }
 }
 
-/// Calls `make` for every object whose settings are `wanted`: with its surface, its settings, the index of the cloth,
-/// and the velocities of its corners in m/s.
-fn surfaces<R: Real, T>(
+/// An object that shadows or pushes the air.
+struct Source<'a> {
+    at: ObjectAt,
+    settings: &'a WindField,
+}
+
+impl Source<'_> {
+    /// The index of the cloth that it is.
+    fn cloth(&self) -> Option<usize> {
+        match self.at {
+            ObjectAt::Cloth(at) => Some(at),
+            ObjectAt::Collider(_) => None,
+        }
+    }
+}
+
+/// Lists the objects that shadow or push the air, and moves their surfaces to where they are.
+fn place_sources<'a, R: Real>(
     objects: &Objects<'_, R>,
     state: &State<R>,
-    frame: &FrameInput,
-    wanted: fn(&WindField) -> bool,
-    make: impl Fn(PlacedSurface, &WindField, Option<usize>, Vec<Vector3<f64>>) -> T,
-) -> Vec<T> {
-    let mut made = Vec::new();
+    surfaces: &mut ObjectSurfaces,
+    frame: &'a FrameInput,
+    pool: &ThreadPool,
+) -> Vec<Source<'a>> {
+    let is_source = |settings: &WindField| settings.casts_shadow() || settings.pushes_air();
+    let mut sources = Vec::new();
     let (models, states) = objects.colliders;
-    for ((model, placed), settings) in models.iter().zip(states).zip(&frame.colliders) {
-        if wanted(&settings.wind_field) {
+    for (at, ((model, placed), settings)) in models.iter().zip(states).zip(&frame.colliders).enumerate() {
+        if is_source(&settings.wind_field) {
+            let at = ObjectAt::Collider(at);
             let place = |point| placed.point(point, objects.time);
-            let surface = PlacedSurface::new(model.boundary.triangles.clone(), place);
-            let moved =
-                placed.start.iter().zip(&placed.end).map(|(start, end)| (end - start) / frame.duration);
-            made.push(make(surface, &settings.wind_field, None, moved.collect()));
+            surfaces.place(at, || model.boundary.triangles.clone(), place, pool);
+            sources.push(Source { at, settings: &settings.wind_field });
         }
     }
     for (at, (cloth, settings)) in objects.cloths.iter().zip(&frame.cloths).enumerate() {
-        if !wanted(&settings.wind_field) || cloth.points().is_empty() {
+        if !is_source(&settings.wind_field) || cloth.points().is_empty() {
             continue;
         }
+        let at = ObjectAt::Cloth(at);
         let first = cloth.points().start;
-        let position = |at: u32| Vector3::from(state.position(first + at));
-        let velocity = |row: u32| Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
-        let triangles: Vec<_> =
-            cloth.surface_triangles().into_iter().map(|t| t.map(|row| row - first)).collect();
-        let (surface, corners) = if triangles.is_empty() {
-            let corner = |at: u32| position(at / 6) + OCTAHEDRON[at as usize % 6] * settings.thickness;
-            (PlacedSurface::new(octahedra(cloth.points().len() as u32), corner), 6)
+        let position = |corner: u32| Vector3::from(state.position(first + corner));
+        if cloth.has_surface() {
+            surfaces.place(at, || cloth.corner_triangles(), position, pool);
         } else {
-            (PlacedSurface::new(triangles, position), 1)
-        };
-        let moved = cloth.points().flat_map(|row| std::iter::repeat_n(velocity(row), corners));
-        made.push(make(surface, &settings.wind_field, Some(at), moved.collect()));
+            // Particles are born, die and mix.
+            let corner = |k: u32| position(k / 6) + OCTAHEDRON[k as usize % 6] * settings.thickness;
+            surfaces.replace(at, PlacedSurface::new(octahedra(cloth.points().len() as u32), corner));
+        }
+        sources.push(Source { at, settings: &settings.wind_field });
     }
-    made
+    sources
+}
+
+/// The velocities of the corners of a source in m/s.
+fn corner_velocities<R: Real>(
+    source: &Source<'_>,
+    objects: &Objects<'_, R>,
+    state: &State<R>,
+    frame: &FrameInput,
+) -> Vec<Vector3<f64>> {
+    match source.at {
+        ObjectAt::Collider(at) => {
+            let placed = &objects.colliders.1[at];
+            let ends = placed.start.iter().zip(&placed.end);
+            ends.map(|(start, end)| (end - start) / frame.duration).collect()
+        }
+        ObjectAt::Cloth(at) => {
+            let cloth = &objects.cloths[at];
+            let corners = if cloth.has_surface() { 1 } else { 6 };
+            let velocity = |row: u32| Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
+            cloth.points().flat_map(|row| std::iter::repeat_n(velocity(row), corners)).collect()
+        }
+    }
 }
 
 /// Corners of an octahedron of radius 1, which stands for a particle.

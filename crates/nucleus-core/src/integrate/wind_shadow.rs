@@ -4,10 +4,12 @@
 //! 1 - (d / D)² of the wind, where D is the length of the shadow. With diffusion the result is the
 //! mean of seven rays, six of them at an angle whose tangent is the diffusion: the shadow then has soft edges and
 //! ends sooner behind a small object. Maya's falloffs are not published.
+//!
+//! The rays of all points are parallel, and neighbouring points are near in space: they are cast in bundles.
 
 use nalgebra::Vector3;
 
-use crate::contact::placed_surface::PlacedSurface;
+use crate::contact::placed_surface::{PlacedSurface, RAYS};
 use crate::input::object_fields::WindField;
 
 /// Directions round the wind, evenly spaced.
@@ -21,8 +23,8 @@ const AROUND: [[f64; 2]; 6] = [
 ];
 
 /// The shadow of one object.
-pub struct WindShadow {
-    surface: PlacedSurface,
+pub struct WindShadow<'a> {
+    surface: &'a PlacedSurface,
     /// The cloth that it is, and whether it shadows itself.
     cloth: Option<usize>,
     shadows_itself: bool,
@@ -30,10 +32,10 @@ pub struct WindShadow {
     rays: Vec<Vector3<f64>>,
 }
 
-impl WindShadow {
+impl<'a> WindShadow<'a> {
     /// The shadow of a surface in this wind.
     pub fn new(
-        surface: PlacedSurface,
+        surface: &'a PlacedSurface,
         settings: &WindField,
         cloth: Option<usize>,
         wind: Vector3<f64>,
@@ -52,14 +54,20 @@ impl WindShadow {
         Self { surface, cloth, shadows_itself: settings.self_shadow, rays }
     }
 
-    /// The share of the wind that gets to a place in metres, which is a point of a cloth, counted from its first.
-    pub fn share(&self, place: Vector3<f64>, [cloth, point]: [u32; 2]) -> f64 {
+    /// Multiplies `shares` by the shares of the wind that get to places in metres. They are consecutive points of a cloth;
+    /// `point` is the first one's, counted from the first of the cloth. At most [`RAYS`].
+    pub fn shade(&self, places: &[Vector3<f64>], [cloth, point]: [u32; 2], shares: &mut [f64; RAYS]) {
         let is_own = self.cloth == Some(cloth as usize);
         if self.rays.is_empty() || is_own && !self.shadows_itself {
-            return 1.0;
+            return;
         }
         let own = is_own.then_some(point);
-        let through = |ray: &Vector3<f64>| self.surface.first_hit(place, *ray, own).map_or(1.0, |at| at * at);
-        self.rays.iter().map(through).sum::<f64>() / self.rays.len() as f64
+        let mut through = [0.0; RAYS];
+        for ray in &self.rays {
+            let reached = self.surface.first_hits(places, *ray, own);
+            through.iter_mut().zip(reached).for_each(|(sum, at)| *sum += at * at);
+        }
+        let count = self.rays.len() as f64;
+        shares.iter_mut().zip(through).for_each(|(share, sum)| *share *= sum / count);
     }
 }

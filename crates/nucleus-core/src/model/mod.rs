@@ -166,6 +166,17 @@ impl<R: Real> ClothModel<R> {
         self.triangles.iter().enumerate().flat_map(of_block).collect()
     }
 
+    /// Whether it has triangles of a surface.
+    pub fn has_surface(&self) -> bool {
+        !self.boundary.triangles.is_empty() || !self.triangles.iter().all(Vec::is_empty)
+    }
+
+    /// The triangles of its surface, counted from its first row.
+    pub fn corner_triangles(&self) -> Vec<[u32; 3]> {
+        let first = self.points().start;
+        self.surface_triangles().into_iter().map(|triangle| triangle.map(|row| row - first)).collect()
+    }
+
     /// The row of a point of the mesh.
     pub fn place(&self, point: usize) -> u32 {
         self.points().start + self.order.place(point)

@@ -8,6 +8,7 @@ use std::cell::Cell;
 
 use nalgebra::Vector3;
 
+use crate::contact::bvh::RayBundle;
 use crate::contact::depenetration::is_inside;
 use crate::contact::material::MIN_THICKNESS;
 use crate::contact::placed_surface::{PlacedSurface, meets};
@@ -148,8 +149,9 @@ fn stopped_at<R: Real>(
         let ray = path[1] - start;
         let is_met = Cell::new(false);
         let from = start - state.origin(times.end);
+        let bundle = RayBundle::new([from; 2], ray);
         state.bvh.descend(
-            |bounds| !is_met.get() && bounds.meets_ray(from, ray, 1.0),
+            |bounds| !is_met.get() && bundle.entry(bounds) <= 1.0,
             |face| {
                 let corners = collider.boundary.triangles[face as usize];
                 let share = meets(start, ray, corners.map(|corner| state.point(corner, times.end)));
