@@ -174,7 +174,7 @@ node_table! {
     }
     "Emission Attributes" {
         /// New particles nearer to others than this share of their contact distance are left out; 0 keeps all.
-        EMISSION_OVERLAP_PRUNING: f64 = float("emissionOverlapPruning", "eopr", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::particles::pruning");
+        EMISSION_OVERLAP_PRUNING: f64 = float("emissionOverlapPruning", "eopr", 0.0).min(0.0).soft(0.0, 1.0).solved("nucleus_core::particles::occupancy");
     }
     "Rotation" {
         /// Contact turns the particles; their orientation is recorded.

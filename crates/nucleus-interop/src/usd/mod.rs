@@ -170,6 +170,9 @@ fn write_ids<R: Read + Seek>(
     Ok(())
 }
 
+/// A list of numbers of a mesh.
+type Part = fn(&ObjectInfo) -> Vec<u32>;
+
 /// Writes the topology: once, or at each sample at which it changes. USD holds such values until the next sample.
 fn write_topology<R: Read + Seek>(
     clip: &mut Clip<R>,
@@ -181,7 +184,7 @@ fn write_topology<R: Read + Seek>(
     stage.attribute(&Attribute::uniform("bool", "doubleSided"), &Value::Bool(true));
     let mut samples = vec![0];
     samples.extend(clip.mesh_changes(object));
-    let parts: [(&str, fn(&ObjectInfo) -> Vec<u32>); 2] = [
+    let parts: [(&str, Part); 2] = [
         ("faceVertexCounts", |object| object.faces.iter().map(|face| face.len() as u32).collect()),
         ("faceVertexIndices", |object| object.faces.corners().to_vec()),
     ];

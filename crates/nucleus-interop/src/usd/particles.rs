@@ -118,6 +118,9 @@ pub(super) fn write_orientations<R: Read + Seek>(
     Ok(())
 }
 
+/// A number of a particle.
+type Fact = fn(&Particle) -> f64;
+
 /// Writes the numbers of particles, so that other tools can identify each over time, and their ages, lifespans and masses.
 /// Returns whether any are recorded.
 pub(super) fn write_particles<R: Read + Seek>(
@@ -136,7 +139,7 @@ pub(super) fn write_particles<R: Read + Seek>(
             write(&Value::Int64s(&ids));
         },
     )?;
-    let primvars: [(&str, fn(&Particle) -> f64); 3] = [
+    let primvars: [(&str, Fact); 3] = [
         ("primvars:age", |particle| particle.age),
         ("primvars:lifespan", |particle| particle.lifespan),
         ("primvars:mass", |particle| particle.mass),
