@@ -213,7 +213,7 @@ pub struct CollisionEvent {
 pub struct ParticleChange {
     /// The object, in which particles are born and die.
     pub cloth: ClothId,
-    /// Its place among the living particles, as in [`StateView::ages`](crate::StateView::ages).
+    /// Its place among the living particles, as in [`StateView::particles`](crate::StateView::particles).
     pub place: usize,
     /// Its new velocity in m/s.
     pub velocity: Option<Vector3<f64>>,
