@@ -109,7 +109,13 @@ fn recreate(graph: &Graph, creations: &BTreeMap<NodeId, Creation>) -> (Graph, BT
     let (mut recreated, mut done) = (Graph::new(), BTreeSet::new());
     for (_, node) in &nodes {
         // The clock is there already.
-        let _ = recreated.add(node.name(), node.node_type());
+        let Ok(twin) = recreated.add(node.name(), node.node_type()) else { continue };
+        // A nucleus with a time of its own is not connected to the clock.
+        if node.node_type().is_a(&nucleus::NUCLEUS)
+            && let Some(time) = node.setting(&nucleus::CURRENT_TIME)
+        {
+            let _ = recreated.set(twin, &nucleus::CURRENT_TIME.row, time.clone());
+        }
     }
     let there = |recreated: &Graph, id: NodeId| recreated.find(graph.node(id).name());
     for (id, _) in &nodes {
