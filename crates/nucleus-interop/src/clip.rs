@@ -307,6 +307,13 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     }
 }
 
+/// Numbers of a particle that formats of points name, besides its own number.
+pub(crate) const PARTICLE_FACTS: [(&str, fn(&Particle) -> f64); 3] = [
+    ("age", |particle| particle.age),
+    ("lifespan", |particle| particle.lifespan),
+    ("mass", |particle| particle.mass),
+];
+
 /// Lowest and highest corner of a bounding box.
 pub type Extent = [[f32; 3]; 2];
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use nucleus_cache::ObjectInfo;
 use nucleus_core::Particle;
 
-use crate::clip::Clip;
+use crate::clip::{Clip, PARTICLE_FACTS};
 use crate::error::ExportError;
 use crate::mesh_files::numbered;
 use crate::output::{OutFile, Output, file_names};
@@ -59,9 +59,6 @@ struct PointArray {
     bytes: Vec<u8>,
 }
 
-/// A number of a particle.
-type Fact = fn(&Particle) -> f64;
-
 /// The values of points: velocities, and numbers, ages, lifespans and masses of particles that have their own.
 fn point_data(velocities: Option<&[[f32; 3]]>, particles: Option<&[Particle]>) -> Vec<PointArray> {
     let mut data = Vec::new();
@@ -74,12 +71,7 @@ fn point_data(velocities: Option<&[[f32; 3]]>, particles: Option<&[Particle]>) -
     let Some(particles) = particles else { return data };
     let ids = particles.iter().flat_map(|particle| (particle.id as i64).to_le_bytes()).collect();
     data.push(PointArray { name: "id", kind: "Int64", components: 1, bytes: ids });
-    let facts: [(&str, Fact); 3] = [
-        ("age", |particle| particle.age),
-        ("lifespan", |particle| particle.lifespan),
-        ("mass", |particle| particle.mass),
-    ];
-    data.extend(facts.map(|(name, fact)| PointArray {
+    data.extend(PARTICLE_FACTS.map(|(name, fact)| PointArray {
         name,
         kind: "Float32",
         components: 1,

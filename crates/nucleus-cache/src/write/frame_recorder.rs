@@ -134,9 +134,11 @@ impl<W: Write + Seek> Recorder<W> {
             self.tracks[k].has_moved = false;
             if let Source::Cloth(id) = source {
                 self.record_attributes(k, id, points, &stamp)?;
-                self.record_looks(k, id, &stamp, state)?;
-                self.record_orientations(k, id, &stamp, state)?;
-                self.record_particles(k, id, &stamp, state)?;
+                let &Track { looks, rotation, particles, .. } = &self.tracks[k];
+                self.record_particles(looks, &stamp, |out| state.looks(id, out), write_looks)?;
+                let turn = |all: &[[f32; 4]], message: &mut Vec<u8>| shuffle(all.as_flattened(), message);
+                self.record_particles(rotation, &stamp, |out| state.orientations(id, out), turn)?;
+                self.record_particles(particles, &stamp, |out| state.particles(id, out), write_particles)?;
             }
         }
         self.time_samples += 1;
@@ -186,68 +188,23 @@ impl<W: Write + Seek> Recorder<W> {
         Ok(())
     }
 
-    /// Writes the looks of particles.
-    fn record_looks(
+    /// Writes a value for each particle of an object, where the channel is recorded: `read` replaces the values, and `write`
+    /// appends their bytes to a message.
+    fn record_particles<T>(
         &mut self,
-        track: usize,
-        cloth: ClothId,
+        channel: Option<u16>,
         stamp: &Stamp,
-        state: &dyn StateView,
+        read: impl FnOnce(&mut Vec<T>),
+        write: impl FnOnce(&[T], &mut Vec<u8>),
     ) -> Result<(), RecordError> {
-        let Some(channel) = self.tracks[track].looks else { return Ok(()) };
-        let mut looks = Vec::new();
-        state.looks(cloth, &mut looks);
-        if looks.is_empty() {
+        let Some(channel) = channel else { return Ok(()) };
+        let mut values = Vec::new();
+        read(&mut values);
+        if values.is_empty() {
             return Ok(());
         }
-        self.send_per_point(channel, stamp, looks.len(), |message| write_looks(&looks, message))
-    }
-
-    /// Writes the orientations of particles.
-    fn record_orientations(
-        &mut self,
-        track: usize,
-        cloth: ClothId,
-        stamp: &Stamp,
-        state: &dyn StateView,
-    ) -> Result<(), RecordError> {
-        let Some(channel) = self.tracks[track].rotation else { return Ok(()) };
-        let mut orientations = Vec::new();
-        state.orientations(cloth, &mut orientations);
-        if orientations.is_empty() {
-            return Ok(());
-        }
-        let values = orientations.as_flattened();
-        self.send_per_point(channel, stamp, orientations.len(), |message| shuffle(values, message))
-    }
-
-    /// Writes the numbers, ages, lifespans and masses of particles.
-    fn record_particles(
-        &mut self,
-        track: usize,
-        cloth: ClothId,
-        stamp: &Stamp,
-        state: &dyn StateView,
-    ) -> Result<(), RecordError> {
-        let Some(channel) = self.tracks[track].particles else { return Ok(()) };
-        let mut particles = Vec::new();
-        state.particles(cloth, &mut particles);
-        if particles.is_empty() {
-            return Ok(());
-        }
-        self.send_per_point(channel, stamp, particles.len(), |message| write_particles(&particles, message))
-    }
-
-    /// Sends a message of values per point, which `write` appends to its head.
-    fn send_per_point(
-        &mut self,
-        channel: u16,
-        stamp: &Stamp,
-        points: usize,
-        write: impl FnOnce(&mut Vec<u8>),
-    ) -> Result<(), RecordError> {
-        points::write_head(stamp, points, 0, false, &mut self.message);
-        write(&mut self.message);
+        points::write_head(stamp, values.len(), 0, false, &mut self.message);
+        write(&values, &mut self.message);
         self.writer.send(stamp, channel, &self.message)
     }
 

@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::container::part_file::{self, PartFile, PartPaths};
 use crate::container::writer::{CacheWriter, Schemas};
 use crate::error::RecordError;
-use crate::messages::attribute::{CONTACTS, LOOKS, PARTICLES, ROTATION, RestEdges, STRAIN};
+use crate::messages::attribute::{Attribute, CONTACTS, LOOKS, PARTICLES, ROTATION, RestEdges, STRAIN};
 use crate::messages::points::{self, Stamp};
 use crate::messages::{checkpoint, topology};
 use crate::run::{ObjectInfo, ObjectKind, RunInfo, Source};
@@ -290,29 +290,17 @@ impl<W: Write + Seek> Recorder<W> {
             if object.kind == ObjectKind::Collider {
                 self.writer.hold(channel); // A collider is recorded only when it moves.
             }
-            let contacts = match is_cloth && self.run.contacts {
-                true => Some(self.channel(&schemas, &name, CONTACTS.topic, CONTACTS.encoding)?),
-                false => None,
-            };
-            let strain = match is_cloth && self.run.strain {
-                true => Some((
-                    self.channel(&schemas, &name, STRAIN.topic, STRAIN.encoding)?,
-                    RestEdges::new(object),
-                )),
-                false => None,
-            };
-            let looks = match is_cloth && self.run.looks && object.kind == ObjectKind::Particles {
-                true => Some(self.channel(&schemas, &name, LOOKS.topic, LOOKS.encoding)?),
-                false => None,
-            };
-            let rotation = match is_cloth && self.run.rotation && object.kind == ObjectKind::Particles {
-                true => Some(self.channel(&schemas, &name, ROTATION.topic, ROTATION.encoding)?),
-                false => None,
-            };
-            let particles = match is_cloth && self.run.particles && object.kind == ObjectKind::Particles {
-                true => Some(self.channel(&schemas, &name, PARTICLES.topic, PARTICLES.encoding)?),
-                false => None,
-            };
+            let are_particles = is_cloth && object.kind == ObjectKind::Particles;
+            let mut attribute =
+                |has: bool, attribute: &Attribute| match has && attribute.is_recorded(&self.run) {
+                    true => self.channel(&schemas, &name, attribute.topic, attribute.encoding).map(Some),
+                    false => Ok(None),
+                };
+            let contacts = attribute(is_cloth, &CONTACTS)?;
+            let strain = attribute(is_cloth, &STRAIN)?.map(|channel| (channel, RestEdges::new(object)));
+            let looks = attribute(are_particles, &LOOKS)?;
+            let rotation = attribute(are_particles, &ROTATION)?;
+            let particles = attribute(are_particles, &PARTICLES)?;
             self.tracks.push(Track {
                 name,
                 source: *source,

@@ -3,9 +3,9 @@
 
 use std::io::{Read, Seek};
 
-use nucleus_core::{Particle, ParticleLook};
+use nucleus_core::ParticleLook;
 
-use crate::clip::{Clip, Extent, extent};
+use crate::clip::{Clip, Extent, PARTICLE_FACTS, extent};
 use crate::error::ExportError;
 use crate::materials;
 
@@ -118,9 +118,6 @@ pub(super) fn write_orientations<R: Read + Seek>(
     Ok(())
 }
 
-/// A number of a particle.
-type Fact = fn(&Particle) -> f64;
-
 /// Writes the numbers of particles, so that other tools can identify each over time, and their ages, lifespans and masses.
 /// Returns whether any are recorded.
 pub(super) fn write_particles<R: Read + Seek>(
@@ -139,13 +136,9 @@ pub(super) fn write_particles<R: Read + Seek>(
             write(&Value::Int64s(&ids));
         },
     )?;
-    let primvars: [(&str, Fact); 3] = [
-        ("primvars:age", |particle| particle.age),
-        ("primvars:lifespan", |particle| particle.lifespan),
-        ("primvars:mass", |particle| particle.mass),
-    ];
-    for (name, fact) in primvars {
-        let primvar = Attribute::of("float[]", name).interpolated("vertex");
+    for (name, fact) in PARTICLE_FACTS {
+        let name = format!("primvars:{name}");
+        let primvar = Attribute::of("float[]", &name).interpolated("vertex");
         write_recorded(
             clip,
             stage,
