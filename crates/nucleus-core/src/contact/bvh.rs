@@ -158,7 +158,7 @@ impl RayBundle {
                 (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
             }
         }
-        // Both are rounded; the boxes have room for it except at their very corners.
+        // Both are rounded; the margin is that of a ray through the corner of a box.
         if first <= last + 1e-12 { first } else { f64::INFINITY }
     }
 }

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_that_overlap_leave_no_room_but_none_below_zero() {
+    fn surfaces_that_overlap_leave_no_clearance_but_none_below_zero() {
         let mut clearance = Clearance::default();
         clearance
             .find(1, |list| list.extend([near(0, [0.0, 1.0, 0.0], -3.0), near(0, [0.0, -1.0, 0.0], 1.0)]));

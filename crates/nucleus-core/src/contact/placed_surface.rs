@@ -55,7 +55,7 @@ pub const RAYS: usize = 8;
 /// Triangles per task.
 const TRIANGLES_PER_TASK: usize = 2048;
 
-/// Room for rounding in comparisons that exclude triangles before they are tested.
+/// Relative margin for rounding in comparisons that exclude triangles before they are tested.
 const ROUNDING: f64 = 1e-9;
 
 impl PlacedSurface {

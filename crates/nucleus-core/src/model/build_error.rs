@@ -90,7 +90,7 @@ pub enum BuildError {
         most: usize,
     },
     /// The solver has as many cloths as it can tell pairs of apart.
-    #[error("there are more than {most} cloths and objects of particles; one solver has {most} at most")]
+    #[error("a solver has at most {most} cloths and objects of particles")]
     TooManyCloths {
         /// The largest number.
         most: usize,

@@ -62,7 +62,7 @@ node_table! {
         SPACE_SCALE: f64 = float("spaceScale", "spsc", 1.0).min(1e-06).max(1000000.0).soft(0.01, 10.0).unit("m per scene unit").solved("nucleus_graph::compile").fixed();
     }
     "Time Attributes" {
-        /// Time of the evaluation; driven by `time1.outTime`.
+        /// Time of the evaluation in frames; driven by `time1.outTime` unless keys or a connection retime it.
         CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).solved("nucleus_graph::simulation");
         /// The frame of the initial state, at which a run begins. Default: the first frame of the scene.
         START_FRAME: f64 = float("startFrame", "stf", 1.0).unit("frame").solved("nucleus_graph::simulation").fixed();

@@ -14,7 +14,7 @@ import { nearestValues, particleSpeeds } from "./speed.js";
 import { hasSurfaces, withSurfaces } from "./surface.js";
 import { Timeline } from "./timeline.js";
 
-// The speed of full saturation at first, in metres per second: what falls from a metre and a bit.
+// The speed of full saturation at first, in metres per second: that after a fall of 1.3 m.
 const FULL_SPEED = 5;
 const COLOURINGS = ["strain", "speed", "contacts", "difference"];
 const DEFAULT_STAGE = { low: [-1, -1, -1], high: [1, 1, 1] };

@@ -142,7 +142,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_subdivision_certifies_a_way_that_clearly_meets_a_face(
+        fn no_subdivision_certifies_a_path_that_clearly_meets_a_face(
             path in proptest::array::uniform2(place()), face in proptest::array::uniform3(place()), travel in place(),
         ) {
             let faces = [face, face.map(|corner| corner + travel)];
@@ -165,7 +165,7 @@ mod tests {
         }
 
         #[test]
-        fn a_plane_along_the_way_keeps_a_point_out_of_the_face_at_all_times(
+        fn a_plane_along_the_path_keeps_a_point_out_of_the_face_at_all_times(
             path in proptest::array::uniform2(place()), from in proptest::array::uniform3(place()), to in proptest::array::uniform3(place()),
         ) {
             if let Some(normal) = plane_along(path, [from, to], CLEAR_GAP) {
