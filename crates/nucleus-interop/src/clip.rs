@@ -307,8 +307,11 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
     }
 }
 
+/// A number of a particle.
+type ParticleFact = fn(&Particle) -> f64;
+
 /// Numbers of a particle that formats of points name, besides its own number.
-pub(crate) const PARTICLE_FACTS: [(&str, fn(&Particle) -> f64); 3] = [
+pub(crate) const PARTICLE_FACTS: [(&str, ParticleFact); 3] = [
     ("age", |particle| particle.age),
     ("lifespan", |particle| particle.lifespan),
     ("mass", |particle| particle.mass),
