@@ -36,7 +36,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State, inverse_mass_of};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver15";
+const KIND: [u8; 8] = *b"solver16";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -398,7 +398,7 @@ fn cloth_contacts_are_valid<R: Real>(cloth_contacts: &ClothContacts<R>, cloths: 
 
 checkpoint_struct!([R: Real] State<R> {
     columns: [anchor, displacement, velocity, chambers, rotations],
-    values: [wind_travel],
+    values: [frames, wind_travel],
     parts: [populations],
     rebuilt: [
         start, depenetration, bearing_depenetration, pushed_out, displaced, step_length, predicted, normal, corrections, area, added_wind,

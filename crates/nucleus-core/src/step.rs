@@ -98,6 +98,7 @@ fn solve_frame<R: CompiledReal>(
     }
     observer.enter(Stage::Report);
     solver.contact.end_frame();
+    solver.state.frames += 1;
     report(solver, frame, &schedule, &counters)
 }
 
@@ -163,7 +164,7 @@ fn solve_substeps<R: CompiledReal>(
         for step in (substep - 1) * schedule.steps..substep * schedule.steps {
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
-            let direction = schedule.direction(step);
+            let direction = schedule.direction(step, solver.state.frames);
             let schedule = schedule.split(frame, splits);
             for (index, span) in schedule.time_steps(step) {
                 let now = TimeStep {

@@ -33,6 +33,7 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         area,
         added_wind,
         field,
+        frames: _,
         wind_travel: _,
         chambers,
         rotations,

@@ -13,7 +13,7 @@ use crate::schedule::physical::physical;
 use crate::schedule::resistance::steps;
 
 /// Least number of time steps with one direction before it alternates.
-const MIN_RUN: u32 = 16;
+const MIN_RUN: u64 = 16;
 
 /// The plan of a frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,19 +142,21 @@ impl<R: Real> Schedule<R> {
         StepInterval { from: f64::from(step) / steps, to: f64::from(step + 1) / steps, end_of_substep }
     }
 
-    /// The direction of the sweeps of a time step, counted from the start of the frame.
+    /// The direction of the sweeps of a time step, counted from the start of the frame, after `frames` frames.
     ///
     /// A sweep in a fixed order is not symmetric: in addition to the stiffness it has a small antisymmetric part, which
     /// couples modes and adds energy to them. If links form odd cycles, every order has that part, and vibrations of an
-    /// undamped cloth grow from rounding to 1 % of strain within a second. The backward order has the same part with
+    /// undamped cloth grow from rounding to 1 % of strain within seconds. The backward order has the same part with
     /// the opposite sign. In runs of 4 to 32 steps the two cancel, and nothing grows. Alternated in every step or two
-    /// they excite the highest frequencies of the cloth, and it diverges. A frame of few steps has no room for runs and
-    /// gains little energy: all its sweeps are forward.
-    pub fn direction(&self, step: u32) -> Direction {
-        let steps = self.substeps * self.steps;
+    /// they excite the highest frequencies of the cloth, and it diverges. Where a frame has too few steps for two runs, a run
+    /// lasts for one frame or several.
+    pub fn direction(&self, step: u32, frames: u64) -> Direction {
+        let steps = u64::from(self.substeps * self.steps);
         // As many runs forward as backward.
-        let runs = steps / (2 * MIN_RUN) * 2;
-        let run = u64::from(step) * u64::from(runs) / u64::from(steps);
+        let run = match steps / (2 * MIN_RUN) * 2 {
+            0 => frames / MIN_RUN.div_ceil(steps),
+            runs => u64::from(step) * runs / steps,
+        };
         if run % 2 == 1 { Direction::Backward } else { Direction::Forward }
     }
 }

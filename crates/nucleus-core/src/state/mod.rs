@@ -56,6 +56,8 @@ pub struct State<R> {
     pub added_wind: Vec<Row4<R>>,
     /// Acceleration by fields in m/s²; empty without fields. Written once per frame, or per substep.
     pub field: Vec<Row4<R>>,
+    /// Number of frames that have been solved; decides the direction of sweeps.
+    pub frames: u64,
     /// How far the wind has carried the air since the start, in metres.
     pub wind_travel: [f64; 3],
     /// The gas in each chamber of each cloth that has pressure.

@@ -45,6 +45,7 @@ impl<R: Real> State<R> {
             pushed_out: _,
             // Not by row.
             step_length: _,
+            frames: _,
             wind_travel: _,
             chambers: _,
             rotations: _,

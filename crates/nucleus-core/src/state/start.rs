@@ -30,6 +30,7 @@ impl<R: Real> State<R> {
             area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
             added_wind: Vec::new(),
             field: Vec::new(),
+            frames: 0,
             wind_travel: [0.0; 3],
             chambers: Vec::new(),
             rotations: Vec::new(),

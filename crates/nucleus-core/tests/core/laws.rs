@@ -115,6 +115,15 @@ fn uneven(seed: u64, quads: bool) -> nucleus_core::Surface {
     surface
 }
 
+#[test]
+fn a_cloth_at_rest_gains_no_energy_in_few_steps_a_frame() {
+    // With all sweeps in one direction: a strain of 1 % within three seconds.
+    for evaluations in [12.0, 24.6, 30.0] {
+        let (strain, energy) = at_rest(uneven(13_835_094_099_054_614_906, false), evaluations, 0.09, 72);
+        assert!(strain < 1e-5, "{evaluations} evaluations: strain {strain:e}, {energy:e} J");
+    }
+}
+
 /// The positions of a small drape after eight frames of a rotated and translated scene, transformed back.
 fn moved(turn: Rotation3<f64>, shift: Vec3) -> Vec<Vec3> {
     let (_, input) = drape(17, 48.0);
