@@ -17,6 +17,7 @@ use crate::bytes::{
     hash_word, load_column, verify_checksum,
 };
 use crate::constraints::angle::AngleGroup;
+use crate::constraints::link::glue::find_pieces;
 use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::untangling::{Correction, Intersection};
@@ -280,6 +281,7 @@ fn rebuild<R: Real>(solver: &mut Solver<R>) {
     }
     let models = (&solver.model.cloths[..], &solver.model.colliders[..]);
     solver.links.rebuild(models);
+    find_pieces(&mut solver.model.cloths, &solver.links);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
 }
 

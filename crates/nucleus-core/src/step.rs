@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 
 use crate::constraints::angular_momentum::{keep_angular_momentum, keeps_angular_momentum};
 use crate::constraints::damp::damp;
-use crate::constraints::link::glue::{break_links, tear_chambers};
+use crate::constraints::link::glue::{break_links, find_pieces, tear_chambers};
 use crate::constraints::link::pass::{begin_links, form_links, relax_links};
 use crate::constraints::link::surface::slide_links;
 use crate::constraints::link::velocity::{apply_link_forces, damp_links, drag_links};
@@ -137,6 +137,9 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     find_near_colliders(&solver.model, &solver.state, &mut solver.contact, frame);
     let Solver { model, state, contact, links, .. } = solver;
     let links_changed = form_links(links, model, frame);
+    if links_changed {
+        find_pieces(&mut model.cloths, links);
+    }
     update_pair_filter(contact, (model, state), links, frame, links_changed);
     balance_joined_cloths(contact, links);
     begin_links(links, model, state, contact, frame);
@@ -233,6 +236,7 @@ fn end_substep<R: CompiledReal>(
     let has_broken = break_links(links, scene, state, frame, end);
     if has_broken {
         tear_chambers(&model.cloths, &mut state.chambers, links);
+        find_pieces(&mut model.cloths, links);
     }
     if has_broken || has_lost_links {
         update_pair_filter(contact, (model, state), links, frame, true);

@@ -9,15 +9,18 @@
 //!
 //! A boundary loop of the mesh is a hole. Sealed, it is capped: the cap carries the pressure to its rim. Open, the missing
 //! cap leaves a net force -p A (thrust), and air streams through at the speed of Bernoulli's law, plus the air that the
-//! opening runs into. A torn weld opens a hole of the square of its length, through which the gas leaves.
+//! opening runs into. A torn weld opens a hole of the square of its length, through which the gas leaves. Of a mesh in pieces
+//! each is pushed as far as it is closed (`pieces.rs`).
 //!
 //! A constant pressure on a surface that grows does unlimited work: beyond some size no linear stiffness holds it (a balloon
 //! bursts). So the push of a time step is limited, relative to a sphere of the mesh's rest area: it moves no point farther
 //! than the radius, the faces an eighth of it in the mean, and it holds a chamber within [`BURST_STRETCH`] times that sphere,
 //! which it approaches ever more slowly: what pressure has set in motion must not fly on. No mesh that keeps its area encloses
-//! more than the sphere does (isoperimetric inequality), so cloth that is not stretched never meets the limit.
+//! more than the sphere does (isoperimetric inequality), so cloth that is not stretched never meets the limit. The volume of a
+//! mesh in pieces has no meaning: the limit ends its push there, and pulls nothing back.
 
 mod holes;
+mod pieces;
 
 use std::borrow::Cow;
 
@@ -33,6 +36,7 @@ use crate::parallel::thread_pool::ThreadPool;
 use crate::state::{Chamber, State};
 
 use holes::{boundary_loops, cap_area, cap_corner, cap_volume};
+use pieces::Pieces;
 
 /// Pascals for a `pressure`, `startPressure` or `incompressibility` of 1.
 pub const PASCALS_PER_PRESSURE: f64 = 1000.0;
@@ -68,6 +72,8 @@ pub struct PressureModel {
     radii: Vec<f64>,
     /// By chamber: volume of the mesh in m³, with the caps of its holes.
     volumes: Vec<f64>,
+    /// The pieces of a mesh that can tear.
+    pieces: Pieces,
     /// First of the chambers in the state.
     pub first: usize,
 }
@@ -94,6 +100,8 @@ struct Sums {
     /// Area of the holes in m², and the flow of still air into them in m³/s.
     hole: f64,
     inflow: f64,
+    /// Whether it is torn or in pieces, so that its volume has no meaning.
+    is_torn: bool,
 }
 
 impl PressureModel {
@@ -134,7 +142,25 @@ impl PressureModel {
         }
         let radii = areas.into_iter().map(|area| (area / (4.0 * std::f64::consts::PI)).sqrt()).collect();
         let triangles = triangles_by_block(surface, place, blocks);
-        Self { triangles, holes, radii, volumes, chamber, first: 0 }
+        let mut model =
+            Self { triangles, holes, radii, volumes, chamber, pieces: Pieces::default(), first: 0 };
+        if !split_off.is_empty() {
+            model.pieces.find(first, &model.chamber, model.triangles.iter().flatten(), &[]);
+        }
+        model
+    }
+
+    /// Finds the pieces anew, where the mesh can tear; `clusters` gives the lowest row that each row of all cloths is welded
+    /// to, and is empty where nothing is welded. `first` is the first row of the cloth.
+    pub fn find_pieces(&mut self, first: u32, clusters: &[u32]) {
+        if !self.pieces.is_empty() {
+            self.pieces.find(first, &self.chamber, self.triangles.iter().flatten(), clusters);
+        }
+    }
+
+    /// Whether the mesh can tear.
+    pub fn can_tear(&self) -> bool {
+        !self.pieces.is_empty()
     }
 
     /// Whether the cloth has any.
@@ -169,8 +195,12 @@ impl PressureModel {
     }
 
     /// The chambers as they are when nothing has moved yet. What they hold is measured by the mesh, wherever the points start.
-    pub fn start<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
+    pub fn start<R: Real>(&mut self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
         self.find_areas(blocks, state, false, pool);
+        if self.can_tear() {
+            let area = &state.area[blocks.range(0).start as usize..];
+            self.pieces.start(&self.chamber, area, self.radii.len());
+        }
         for (index, sums) in self.sums(blocks, state, false).into_iter().enumerate() {
             let (start_volume, volume) = (self.volumes[index], sums.volume / 3.0);
             state.chambers[self.first + index] = Chamber { start_volume, volume, amount: -1.0, torn: 0.0 };
@@ -187,7 +217,10 @@ impl PressureModel {
     ) {
         let sealed = matches!(frame.pressure, Pressure::Gas { sealed: true, .. });
         self.find_areas(blocks, state, sealed, pool);
-        let sums = self.sums(blocks, state, sealed);
+        let mut sums = self.sums(blocks, state, sealed);
+        for ((index, sums), chamber) in sums.iter_mut().enumerate().zip(&state.chambers[self.first..]) {
+            sums.is_torn = chamber.torn > 0.0 || !self.pieces.is_one(index);
+        }
         let gases = &mut state.chambers[self.first..self.first + sums.len()];
         let step = |((sums, chamber), radius): ((&Sums, &mut Chamber), &f64)| {
             chamber.step(frame, sums, radius * frame.rest_scale)
@@ -195,13 +228,21 @@ impl PressureModel {
         let pushes: Vec<R> = sums.iter().zip(gases).zip(&self.radii).map(step).map(R::from_f64).collect();
         let displacement = DisjointSlice::new(&mut state.displacement);
         let (area, first) = (&state.area, blocks.range(0).start);
+        let shares: Vec<R> = match self.can_tear() {
+            true => self.pieces.shares(&area[first as usize..]).into_iter().map(R::from_f64).collect(),
+            false => Vec::new(),
+        };
         pool.parallel_for(blocks.len(), |block| {
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
             let points = unsafe { displacement.run(blocks.range(block)) };
             for (row, point) in blocks.range(block).zip(points) {
-                let Some(&push) = pushes.get(self.chamber[(row - first) as usize] as usize) else { continue };
-                let scale = point.0[3] * push;
+                let own = (row - first) as usize;
+                let Some(&push) = pushes.get(self.chamber[own] as usize) else { continue };
+                let scale = match self.pieces.of(own) {
+                    Some(piece) => point.0[3] * push * shares[piece],
+                    None => point.0[3] * push,
+                };
                 let a = area[row as usize].xyz();
                 (0..3).for_each(|axis| point.0[axis] += scale * a[axis]);
             }
@@ -310,7 +351,9 @@ impl Sums {
         let change = self.area * radius * MAX_FACE_ADVANCE;
         let most = before + change.min((sphere - before) * APPROACH);
         let limited = after.max((before - change).min(most)).min(most);
-        let push = if limited == after { push } else { side * (limited - volume) / self.mobility };
+        let wanted = push;
+        let push = if limited == after { wanted } else { side * (limited - volume) / self.mobility };
+        let push = if self.is_torn { push.clamp(wanted.min(0.0), wanted.max(0.0)) } else { push };
         let advance = push.abs() * self.fastest.sqrt();
         push * if advance > radius { radius / advance } else { 1.0 }
     }

@@ -104,6 +104,14 @@ pub fn break_links<R: Real>(
     any
 }
 
+/// Finds the pieces of all meshes under pressure that can tear, once links have formed or broken.
+pub fn find_pieces<R: Real>(cloths: &mut [ClothModel<R>], links: &Links<R>) {
+    if cloths.iter().any(|cloth| cloth.pressure.can_tear()) {
+        let clusters = links.clusters(cloths);
+        cloths.iter_mut().for_each(|cloth| cloth.pressure.find_pieces(cloth.points().start, &clusters));
+    }
+}
+
 /// Sets the holes of all chambers to those at the welds that are torn.
 pub fn tear_chambers<R: Real>(cloths: &[ClothModel<R>], chambers: &mut [Chamber], links: &Links<R>) {
     chambers.iter_mut().for_each(|chamber| chamber.torn = 0.0);
