@@ -29,7 +29,7 @@ use crate::schedule::{Schedule, TimeInterval};
 use crate::solver::Solver;
 use crate::state::State;
 
-/// Strains are counted in `BINS` bins of this width; the last bin also has everything above.
+/// Strains are counted in `BINS` bins of this width; the last one also counts everything above.
 const BIN: f64 = 1e-4;
 const BINS: usize = 10_000;
 
@@ -81,30 +81,50 @@ pub fn report<R: Real>(
     }
 }
 
-/// The largest strain, and the 99th percentile (to 1e-4).
+/// The largest strain, and the 99th percentile (to 1e-4; exact above 1).
 fn strains<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> (f64, f64) {
     let mut max = 0.0f64;
     let mut bins = vec![0u64; BINS];
     let mut links = 0u64;
-    for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
-        let scale = R::from_f64(settings.rest_length_scale);
-        for group in cloth.stretch.groups() {
-            let strains = group.strain(&state.displacement, scale);
-            for (_, strain) in group.rest_length.iter().zip(strains).filter(|(rest, _)| **rest > R::ZERO) {
-                let strain = strain.to_f64();
-                max = max.max(strain);
-                bins[((strain.max(0.0) / BIN) as usize).min(BINS - 1)] += 1;
-                links += 1;
-            }
-        }
-    }
+    for_each_strain(cloths, state, frame, |strain| {
+        max = max.max(strain);
+        bins[((strain.max(0.0) / BIN) as usize).min(BINS - 1)] += 1;
+        links += 1;
+    });
     let mut below = 0;
     let bin = bins.iter().position(|&count| {
         below += count;
         below * 100 >= links * 99
     });
-    let upper = bin.map_or(0.0, |bin| (bin + 1) as f64 * BIN);
+    let upper = match bin {
+        Some(bin) if bin == BINS - 1 => {
+            // What the last bin does not tell apart.
+            let mut largest = Vec::new();
+            for_each_strain(cloths, state, frame, |strain| {
+                largest.extend((strain >= 1.0 - BIN).then_some(strain))
+            });
+            largest.sort_unstable_by(f64::total_cmp);
+            largest.iter().rev().nth((links / 100) as usize).copied().unwrap_or(max)
+        }
+        bin => bin.map_or(0.0, |bin| (bin + 1) as f64 * BIN),
+    };
     (max, if links == 0 { 0.0 } else { upper.min(max) })
+}
+
+fn for_each_strain<R: Real>(
+    cloths: &[ClothModel<R>],
+    state: &State<R>,
+    frame: &FrameInput,
+    mut each: impl FnMut(f64),
+) {
+    for (cloth, settings) in cloths.iter().zip(&frame.cloths) {
+        let scale = R::from_f64(settings.rest_length_scale);
+        for group in cloth.stretch.groups() {
+            let strains = group.strain(&state.displacement, scale);
+            let rows = group.rest_length.iter().zip(strains).filter(|(rest, _)| **rest > R::ZERO);
+            rows.for_each(|(_, strain)| each(strain.to_f64()));
+        }
+    }
 }
 
 /// The elastic energy of stretch, shear and bending in joules; see [`Solver::elastic_energy`].
