@@ -18,8 +18,10 @@ pub struct CorruptionReport {
     pub meshes: Vec<String>,
     /// Objects that are lost entirely.
     pub objects: Vec<String>,
-    /// The text of the scene is damaged and left out.
-    pub scene: bool,
+    /// What damaged or missing records of the run hold, which is left out: `the texture coordinates`, for instance.
+    pub records: Vec<&'static str>,
+    /// Number of damaged redundant copies: nothing is lost by them alone.
+    pub copies: usize,
     /// Bytes at the end of the file that belong to no whole frame.
     pub bytes: u64,
     /// Frames that are missing or unreadable.
@@ -44,7 +46,7 @@ impl CorruptionReport {
 
     /// The damage that no redundant copy repairs, as text; `None` when there is none.
     pub fn unrecoverable(&self) -> Option<String> {
-        let left = Self { truncated: false, index: false, bytes: 0, start: false, ..self.clone() };
+        let left = Self { truncated: false, index: false, bytes: 0, start: false, copies: 0, ..self.clone() };
         (!left.is_intact()).then(|| left.to_string())
     }
 
@@ -81,14 +83,17 @@ impl fmt::Display for CorruptionReport {
         if !self.objects.is_empty() {
             parts.push(format!("lost: {}", names(&self.objects)));
         }
-        if self.scene {
-            parts.push("the text of the scene is damaged".to_owned());
+        if !self.records.is_empty() {
+            parts.push(format!("damaged and left out: {}", self.records.join(", ")));
         }
         if !self.frames.is_empty() {
             parts.push(format!("missing or damaged: {}", frame_ranges(&self.frames)));
         }
         if !self.checkpoints.is_empty() {
             parts.push(format!("damaged: the checkpoint of {}", frame_ranges(&self.checkpoints)));
+        }
+        if self.copies > 0 {
+            parts.push(format!("damaged, without loss: {} of the redundant copies", self.copies));
         }
         match parts.is_empty() {
             true => f.write_str("nothing is lost"),

@@ -28,6 +28,12 @@ pub enum OpenError {
         /// The folder.
         path: PathBuf,
     },
+    /// The path names a pipe, a socket or a device.
+    #[error("`{}` is not a regular file: a cache is read from a disk", path.display())]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+    },
     /// Another run writes the file.
     #[error("`{}` is being written by another run", path.display())]
     InUse {

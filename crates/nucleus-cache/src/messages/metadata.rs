@@ -21,7 +21,9 @@ const CAMERAS: &str = "nucleus.cameras";
 const SELECTIONS: &str = "nucleus.selections";
 const UVS: &str = "nucleus.uvs";
 const RUN: &str = "nucleus.run";
-/// Number of cameras; a reader detects a lost camera by it.
+/// Names of the further records of the run, with spaces between; a reader detects a lost record by it.
+const FURTHER_RECORDS: &str = "records";
+/// In older caches: number of cameras.
 const COUNT_OF_CAMERAS: &str = "cameras";
 const GROUND: &str = "ground";
 /// The ground plane at each frame, a line each, if it moves.
@@ -37,7 +39,7 @@ const SMALL: &str = "small";
 /// Key of a record's checksum over all its other keys and values.
 const CHECKSUM: &str = "crc32";
 /// Keys that the format defines, whether or not a run has them.
-const RESERVED: [&str; 19] = [
+const RESERVED: [&str; 20] = [
     "format",
     "start",
     "end",
@@ -51,6 +53,7 @@ const RESERVED: [&str; 19] = [
     LOOKS.topic,
     ROTATION.topic,
     PARTICLES.topic,
+    FURTHER_RECORDS,
     COUNT_OF_CAMERAS,
     GROUND,
     GROUND_MOTION,
@@ -100,8 +103,9 @@ impl RunInfo {
         if self.particles {
             run.insert(PARTICLES.topic.to_owned(), true.to_string());
         }
-        if !self.cameras.is_empty() {
-            run.insert(COUNT_OF_CAMERAS.to_owned(), self.cameras.len().to_string());
+        let further: Vec<String> = self.extras_to_metadata().map(|record| record.name).collect();
+        if !further.is_empty() {
+            run.insert(FURTHER_RECORDS.to_owned(), further.join(" "));
         }
         // Keys with default values are left out.
         run.extend(self.radii.iter().map(|(name, radius)| (format!("{RADIUS}{name}"), radius.to_string())));
@@ -138,8 +142,8 @@ impl RunInfo {
         cameras.into_iter().chain(uvs).chain(selections)
     }
 
-    /// The run, and whether its scene is undamaged. A damaged scene is left out.
-    pub(crate) fn from_metadata(records: &[Metadata]) -> Result<(Self, bool), OpenError> {
+    /// The run, and the names of its records that are damaged or missing; what they hold is left out.
+    pub(crate) fn from_metadata(records: &[Metadata]) -> Result<(Self, Vec<&'static str>), OpenError> {
         let find = |name: &str| {
             let mut named = records.iter().filter(|record| record.name == name);
             named.clone().find(|record| checksum_holds(record)).or(named.next())
@@ -154,18 +158,22 @@ impl RunInfo {
             _ => {}
         }
         run.0.remove(CHECKSUM);
-        let scene = find(SCENE).filter(|record| checksum_holds(record));
-        let cameras = find(CAMERAS).filter(|record| checksum_holds(record));
-        let cameras = cameras.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default();
-        // Lost coordinates cost a texture in an export, no frame.
-        let uvs = find(UVS).filter(|record| checksum_holds(record));
-        let uvs = uvs.map(|record| texture_coordinates::from_keys(&record.metadata)).unwrap_or_default();
-        let selections = find(SELECTIONS).filter(|record| checksum_holds(record));
-        let selections = selections.map(|record| selections::from_keys(&record.metadata)).unwrap_or_default();
-        let count: usize = run.0.remove(COUNT_OF_CAMERAS).and_then(|count| count.parse().ok()).unwrap_or(0);
-        let (scene_is_sound, mut scene) =
-            (scene.is_some(), scene.map(|record| record.metadata.clone()).unwrap_or_default());
-        let scene_is_sound = scene_is_sound && cameras.len() == count;
+        let further = run.0.remove(FURTHER_RECORDS).unwrap_or_default();
+        let has_cameras = run.0.remove(COUNT_OF_CAMERAS).is_some();
+        let mut lost = Vec::new();
+        let mut contents = |name: &'static str| {
+            let is_listed = name == SCENE || further.split(' ').any(|listed| listed == name);
+            let found = find(name);
+            let sound = found.filter(|record| checksum_holds(record));
+            if sound.is_none() && (found.is_some() || is_listed || has_cameras && name == CAMERAS) {
+                lost.push(name);
+            }
+            sound.map(|record| record.metadata.clone()).unwrap_or_default()
+        };
+        let mut scene = contents(SCENE);
+        let cameras = camera::from_keys(&contents(CAMERAS));
+        let texture_coordinates = texture_coordinates::from_keys(&contents(UVS));
+        let selections = selections::from_keys(&contents(SELECTIONS));
         let info = Self {
             scene_path: scene.remove("path").unwrap_or_default(),
             scene_text: scene.remove("text").unwrap_or_default(),
@@ -186,7 +194,7 @@ impl RunInfo {
             radii: run.radii()?,
             surfaces: run.surfaces()?,
             cameras,
-            texture_coordinates: uvs,
+            texture_coordinates,
             selections,
             checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
             packing: run.packing(),
@@ -195,7 +203,7 @@ impl RunInfo {
         };
         match info.fault() {
             Some(fault) => Err(OpenError::BadValue { key: RUN, value: fault }),
-            None => Ok((info, scene_is_sound)),
+            None => Ok((info, lost)),
         }
     }
 }
@@ -204,6 +212,17 @@ impl RunInfo {
 pub(crate) fn with_cameras(run: RunInfo, records: &[Metadata]) -> RunInfo {
     let found = records.iter().find(|record| record.name == CAMERAS && checksum_holds(record));
     RunInfo { cameras: found.map(|record| camera::from_keys(&record.metadata)).unwrap_or_default(), ..run }
+}
+
+/// What a record holds, for messages.
+pub(crate) fn content_of(record: &str) -> &'static str {
+    match record {
+        SCENE => "the text of the scene",
+        CAMERAS => "the cameras",
+        UVS => "the texture coordinates",
+        SELECTIONS => "the selections",
+        _ => "a record of the run",
+    }
 }
 
 /// A metadata record with a checksum: MCAP has none for metadata.
@@ -328,6 +347,8 @@ fn plane(line: &str) -> Option<Plane> {
 mod tests {
     use super::*;
     use crate::camera::{Camera, CameraView, FilmFit};
+    use crate::selections::SelectedPoints;
+    use crate::texture_coordinates::TextureCoordinates;
 
     #[test]
     fn metadata_of_a_run_comes_back() {
@@ -351,7 +372,7 @@ mod tests {
         };
         for detail in [Detail::Frames, Detail::Substeps, Detail::Every(7)] {
             let run = RunInfo { detail, interval: 3, checkpoint: 24, packing: Packing::Small, ..run.clone() };
-            assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, true));
+            assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (run, Vec::new()));
         }
     }
 
@@ -376,7 +397,7 @@ mod tests {
         let extra: BTreeMap<String, String> = written.metadata;
         assert!(extra.len() >= RESERVED.len() + 2, "every key of the format is among them: {extra:?}");
         let run = RunInfo { extra, ..RunInfo::default() };
-        assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (RunInfo::default(), true));
+        assert_eq!(RunInfo::from_metadata(&run.to_metadata()).unwrap(), (RunInfo::default(), Vec::new()));
     }
 
     /// The error for a run with one changed value.
@@ -396,20 +417,34 @@ mod tests {
     }
 
     #[test]
-    fn lost_cameras_are_detected() {
+    fn each_record_that_is_lost_or_changed_is_detected() {
         let view = CameraView::default();
         let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Vertical, views: vec![view; 2] };
-        let run = RunInfo { cameras: vec![camera], ..RunInfo::default() };
-        let [scene, record] = run.to_metadata();
-        let mut cameras = run.extras_to_metadata().next().unwrap();
-        let read = |cameras: &Metadata| {
-            RunInfo::from_metadata(&[scene.clone(), record.clone(), cameras.clone()]).unwrap()
+        let coordinates = TextureCoordinates { corners: vec![0, 0, 0], values: vec![[0.5, 0.25]] };
+        let run = RunInfo {
+            cameras: vec![camera],
+            texture_coordinates: BTreeMap::from([("cloth1".to_owned(), coordinates)]),
+            selections: vec![SelectedPoints {
+                owner: "hem".to_owned(),
+                object: "cloth1".to_owned(),
+                points: vec![0],
+            }],
+            ..RunInfo::default()
         };
-        assert_eq!(read(&cameras), (run.clone(), true));
-        cameras.metadata.insert("camera shot".to_owned(), "fill".to_owned());
-        assert_eq!((read(&cameras).0.cameras, read(&cameras).1), (Vec::new(), false));
-        cameras.name = "nucleus.camerbs".to_owned();
-        assert!(!read(&cameras).1);
+        let records: Vec<_> = run.to_metadata().into_iter().chain(run.extras_to_metadata()).collect();
+        assert_eq!(RunInfo::from_metadata(&records).unwrap(), (run, Vec::new()));
+        for at in [CAMERAS, UVS, SELECTIONS].map(|name| {
+            records.iter().position(|record| record.name == name).expect("every record is written")
+        }) {
+            let lost = |change: fn(&mut Metadata)| {
+                let mut records = records.clone();
+                change(&mut records[at]);
+                RunInfo::from_metadata(&records).unwrap().1
+            };
+            let name = records[at].name.as_str();
+            assert_eq!(lost(|record| _ = record.metadata.insert("more".to_owned(), String::new())), [name]);
+            assert_eq!(lost(|record| record.name.push('x')), [name]);
+        }
     }
 
     #[test]
@@ -417,8 +452,8 @@ mod tests {
         let run = RunInfo { scene_text: "a".to_owned(), ..RunInfo::default() };
         let [mut scene, mut record] = run.to_metadata();
         scene.metadata.insert("text".to_owned(), "b".to_owned());
-        let (read, sound) = RunInfo::from_metadata(&[scene.clone(), record.clone()]).unwrap();
-        assert_eq!((read.scene_text.as_str(), sound), ("", false));
+        let (read, lost) = RunInfo::from_metadata(&[scene.clone(), record.clone()]).unwrap();
+        assert_eq!((read.scene_text.as_str(), lost), ("", vec![SCENE]));
         record.metadata.insert("fps".to_owned(), "25".to_owned());
         assert!(matches!(RunInfo::from_metadata(&[scene, record]), Err(OpenError::NoRecord { .. })));
     }

@@ -121,8 +121,22 @@ impl<R: Read + Seek> Playback<R> {
             }
         }
         self.report_lost_meshes(missed)?;
+        self.verify_copies()?;
         self.corruption.sort_and_dedup();
         Ok(&self.corruption)
+    }
+
+    fn verify_copies(&mut self) -> Result<(), ReadError> {
+        self.corruption.copies = 0;
+        self.loaded_copy = None;
+        for place in &self.file_index.copies.places {
+            match self.copy.read_copy(&mut self.file, place.clone()) {
+                Ok(()) => {}
+                Err(ChunkError::Damaged) => self.corruption.copies += 1,
+                Err(ChunkError::Io(error)) => return Err(ReadError::Io(error)),
+            }
+        }
+        Ok(())
     }
 
     /// Adds a damaged chunk to the corruption report.

@@ -10,7 +10,7 @@ use crate::container::index::{FileIndex, rebuild, summary};
 use crate::container::part_file;
 use crate::corruption::CorruptionReport;
 use crate::error::OpenError;
-use crate::messages::metadata::PROFILE;
+use crate::messages::metadata::{self, PROFILE};
 use crate::messages::topology;
 use crate::read::time_index::{self, TimeSample};
 use crate::run::{ObjectInfo, RunInfo};
@@ -64,6 +64,10 @@ pub(crate) fn file_at(path: &Path) -> Result<File, OpenError> {
     if path.is_dir() {
         return Err(OpenError::Folder { path: path.to_owned() });
     }
+    // To open a pipe would wait for a writer.
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        return Err(OpenError::NotAFile { path: path.to_owned() });
+    }
     File::open(path).map_err(|source| OpenError::Io { path: path.to_owned(), source })
 }
 
@@ -109,7 +113,7 @@ impl<R: Read + Seek> Playback<R> {
     fn read_run(&mut self, head: Head) -> Result<(), OpenError> {
         let is_ours = matches!(&head, Head::Of { profile, .. } if profile == PROFILE);
         let read = RunInfo::from_metadata(&self.file_index.metadata);
-        let is_sound = matches!(read, Ok((_, true)));
+        let is_sound = matches!(&read, Ok((_, lost)) if lost.is_empty());
         if !is_ours || !is_sound {
             self.file_index.read_copies(&mut self.file, &mut self.copy)?;
         }
@@ -120,7 +124,7 @@ impl<R: Read + Seek> Playback<R> {
             return Err(head.refusal());
         }
         let nothing = self.corruption.truncated && self.file_index.chunks.is_empty();
-        let (run, scene_is_sound) = match RunInfo::from_metadata(&self.file_index.metadata) {
+        let (run, lost) = match RunInfo::from_metadata(&self.file_index.metadata) {
             Err(OpenError::NoRecord { .. }) if nothing => return Err(OpenError::TooShort),
             Err(error @ OpenError::NoRecord { .. }) => {
                 let [_, record] = self.infer_run()?.ok_or(error)?.to_metadata();
@@ -131,8 +135,8 @@ impl<R: Read + Seek> Playback<R> {
             run => run?,
         };
         self.run = run;
-        self.corruption.start = !is_ours || scene_is_sound && !is_sound;
-        self.corruption.scene = !scene_is_sound;
+        self.corruption.start = !is_ours || lost.is_empty() && !is_sound;
+        self.corruption.records = lost.into_iter().map(metadata::content_of).collect();
         self.library = match head {
             Head::Of { library, .. } if is_ours => library,
             _ => self.file_index.copies.library.clone().unwrap_or_default(),

@@ -138,7 +138,7 @@ impl<R: Read + Seek> Playback<R> {
             };
             let records = run.to_metadata().into_iter().chain(run.extras_to_metadata());
             records.for_each(|record| self.file_index.set_metadata(record));
-            self.corruption.scene = false;
+            self.corruption.records.clear();
             self.run = run;
         }
         Ok(())

@@ -8,7 +8,7 @@ use mcap::records::MessageHeader;
 use crate::container::writer::CacheWriter;
 use crate::error::{ReadError, RecordError};
 use crate::messages::attribute::Attribute;
-use crate::messages::{points, topology};
+use crate::messages::{metadata, points, topology};
 use crate::read::load::LatestMessage;
 use crate::read::playback::{FIRST, Playback};
 use crate::run::{ObjectKind, Packing};
@@ -84,8 +84,14 @@ impl<R: Read + Seek> Playback<R> {
 
     /// Writes the records before the first frame.
     fn begin_recovered<W: Write + Seek>(&self, saved: &mut Saved<W>) -> Result<(), RecoverError> {
-        for record in &self.file_index.metadata {
-            saved.writer.metadata(record)?;
+        if self.corruption.records.is_empty() {
+            self.file_index.metadata.iter().try_for_each(|record| saved.writer.metadata(record))?;
+        } else {
+            // The record of the run lists the others: without what is lost, but for the scene, which every run has.
+            let is_lost = |name: &str| self.corruption.records.contains(&metadata::content_of(name));
+            let records = self.run.to_metadata().into_iter().chain(self.run.extras_to_metadata());
+            let mut kept = records.filter(|record| !is_lost(&record.name));
+            kept.try_for_each(|record| saved.writer.metadata(&record))?;
         }
         let uses = |one: &Attribute| {
             self.file_index.channels.values().any(|channel| channel.message_encoding == one.encoding)

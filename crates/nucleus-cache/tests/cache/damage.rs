@@ -1,8 +1,9 @@
 //! Truncation at every byte and a flipped bit in every byte: whole frames play, all others are reported.
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use nucleus_cache::{OpenError, Playback, Recorder};
+use nucleus_cache::{OpenError, Playback, Recorder, RunInfo, TextureCoordinates};
 
 use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
 
@@ -160,4 +161,62 @@ fn no_cache_of_the_corpus_makes_the_reader_panic() {
         cache.sizes().unwrap();
     }
     assert!(count > 20, "the corpus is there: {count}");
+}
+
+/// A run with texture coordinates, which are in a record of their own and in the redundant copies.
+fn textured() -> RunInfo {
+    let uvs = TextureCoordinates { values: vec![[0.125, 0.5]; 4], corners: Vec::new() };
+    RunInfo { texture_coordinates: BTreeMap::from([("cloth".to_owned(), uvs)]), ..falling::run_info() }
+}
+
+#[test]
+fn a_damaged_record_of_the_run_is_read_from_a_copy_and_reported() {
+    let (bytes, _) = falling::whole_run(&textured());
+    let record = b"uv cloth";
+    let at =
+        bytes.windows(record.len()).position(|part| part == record).expect("a record outside the copies");
+    for at in at..at + record.len() + 8 {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1;
+        let cache = open(&flipped).unwrap();
+        assert_eq!(cache.run().texture_coordinates, textured().texture_coordinates, "byte {at}");
+        assert!(!cache.corruption().is_intact() && cache.corruption().unrecoverable().is_none(), "byte {at}");
+    }
+}
+
+#[test]
+fn a_record_of_the_run_without_a_sound_copy_is_lost_and_named() {
+    let (bytes, _) = falling::whole_run(&textured());
+    let mut damaged = falling::without_copies(&bytes);
+    let at = damaged.windows(8).position(|part| part == b"uv cloth").expect("a record");
+    damaged[at] ^= 1;
+    let mut cache = open(&damaged).unwrap();
+    assert!(cache.run().texture_coordinates.is_empty());
+    let lost = cache.corruption().unrecoverable().expect("a loss");
+    assert_eq!(lost, "damaged and left out: the texture coordinates");
+    let mut saved = Vec::new();
+    cache.recover(Cursor::new(&mut saved)).unwrap();
+    assert!(open(&saved).unwrap().verify().unwrap().is_intact(), "the recovered cache has no such record");
+}
+
+#[test]
+fn damaged_copies_are_reported_and_cost_nothing() {
+    let (bytes, _) = falling::whole_run(&textured());
+    let copies = mcap::Summary::read(&bytes).unwrap().unwrap().attachment_indexes;
+    let mut damaged = bytes.clone();
+    for copy in &copies {
+        damaged[(copy.offset + copy.length) as usize - 20] ^= 1;
+    }
+    let mut cache = open(&damaged).unwrap();
+    let report = cache.verify().unwrap();
+    assert_eq!((report.copies, report.unrecoverable()), (copies.len(), None));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_without_waiting_for_a_writer() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.mcap");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    assert!(matches!(Playback::open(&pipe), Err(OpenError::NotAFile { .. })));
 }
