@@ -6,6 +6,9 @@ use nucleus_graph::attributes::{Attribute, Kind};
 use nucleus_graph::graph::Graph;
 use nucleus_graph::scene::{AssignError, Assignment};
 
+/// The largest number of values of a range.
+const MAX_VALUES: u32 = 1_000_000;
+
 /// An attribute that differs from run to run, and its values.
 ///
 /// ```
@@ -81,6 +84,12 @@ pub enum AxisError {
         /// The text.
         text: String,
     },
+    /// A range has too many values.
+    #[error("`{text}`: a range has at most {MAX_VALUES} values")]
+    TooMany {
+        /// The text.
+        text: String,
+    },
     /// A logarithmic range reaches zero.
     #[error("`{text}`: both ends of a logarithmic range must be above zero")]
     NoLogarithm {
@@ -149,6 +158,7 @@ impl Values {
         }
         match count {
             None => Ok(Self::Sampled(interval)),
+            Some(count) if count > MAX_VALUES => Err(AxisError::TooMany { text: text() }),
             Some(count) if count >= 2 => Ok(Self::Steps(interval, count)),
             Some(_) => Err(AxisError::TooFew { text: text() }),
         }
@@ -267,11 +277,15 @@ impl Axis {
             }
         };
         let is_range = !matches!(self.values, Values::List(_));
-        let mut row = None;
+        let (mut row, mut resolved) = (None, Vec::new());
         for value in values {
             let mut one = Assignment { node: self.node.clone(), attribute: self.attribute.clone(), value };
             row = Some(one.resolve(graph)?);
             self.attribute = one.attribute;
+            resolved.push(one.value);
+        }
+        if let Values::List(values) = &mut self.values {
+            *values = resolved;
         }
         let Some(row) = row else { return Err(AxisError::EmptyValue { text: self.name() }) };
         if is_range && matches!(row.kind, Kind::Bool | Kind::Choice(_)) {
@@ -314,6 +328,8 @@ mod tests {
         );
         assert_eq!(steps("n.subSteps=1..3/5"), ["1", "2", "3"], "whole numbers occur once");
         assert_eq!(steps("n.windSpeed=5..-5/3"), ["5", "0", "-5"]);
+        assert_eq!(steps("c.preset=silk,denim"), ["\"silk\"", "\"denim\""]);
+        assert!(axis("c.damp=0..1/3000000000").unwrap_err().ends_with("a range has at most 1000000 values"));
     }
 
     #[test]

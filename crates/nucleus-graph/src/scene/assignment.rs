@@ -65,6 +65,11 @@ pub enum AssignError {
     Edit(#[from] EditError),
 }
 
+/// Whether a character needs no quotes.
+fn is_of_word(c: char) -> bool {
+    c.is_alphanumeric() || matches!(c, '_' | '-' | '.' | '/')
+}
+
 /// `; did you mean ...?`, or a help as it is.
 fn hint(near: &Option<String>) -> String {
     match near {
@@ -99,7 +104,8 @@ impl FromStr for Assignment {
 }
 
 impl Assignment {
-    /// Checks node, attribute and value against a graph, and replaces a short name of the attribute by its long one.
+    /// Checks node, attribute and value against a graph, and replaces a short name of the attribute by its long one. A word
+    /// for an attribute that takes text is put in quotes, which shells remove.
     /// Returns the row of the attribute.
     ///
     /// # Errors
@@ -113,6 +119,9 @@ impl Assignment {
         let whole = node_type.attribute(&self.attribute).map(|row| (row, row.name.to_owned()));
         let Some((row, name)) = whole.or_else(part) else { return Err(self.unknown_attribute(node_type)) };
         self.attribute = name;
+        if matches!(row.kind, Kind::Text) && self.value.chars().all(is_of_word) {
+            self.value = format!("\"{}\"", self.value);
+        }
         self.check_value(node_type, row)?;
         Ok(row)
     }
@@ -161,7 +170,7 @@ impl Assignment {
     fn refusal(&self, found: Vec<Diagnostic>) -> AssignError {
         let first = found.into_iter().find(|one| one.severity == Severity::Error);
         let (message, help) = first.map(|first| (first.message, first.help)).unwrap_or_default();
-        AssignError::Value { message: message.replace("`preset`", &format!("`{}`", self.node)), help }
+        AssignError::Value { message: message.replace("of `preset`", &format!("of `{}`", self.node)), help }
     }
 
     fn edit(&self) -> Edit {
@@ -227,6 +236,10 @@ mod tests {
         }
         assert!(resolved("nucleus1.windSpeed=keys([(1, 0), (9, 5)])").is_ok());
         assert!(resolved("cloth1.inputMesh=\"plane\"").is_ok());
+        assert_eq!(resolved("cloth1.preset=silk").unwrap().value, "\"silk\"");
+        assert_eq!(resolved("cloth1.preset=\"silk\"").unwrap().value, "\"silk\"");
+        let refused = resolved("cloth1.preset=3 + 4").unwrap_err();
+        assert!(refused.contains("is not one value"), "{refused}");
     }
 
     #[test]
