@@ -144,7 +144,7 @@ node_table! {
     "Initial State" {
         /// Initial positions in world space, in place of those of the input mesh. The rest shape remains that of the mesh.
         START_POSITIONS: Vec<[f64; 3]> = vectors("startPositions", "spns").unit("scene units").solved("nucleus_graph::compile");
-        /// Initial velocities in world space.
+        /// Initial velocities in world space: one for each point, or one for all.
         START_VELOCITIES: Vec<[f64; 3]> = vectors("startVelocities", "sves").unit("scene units/s").solved("nucleus_graph::compile");
     }
     "Caching" {

@@ -71,13 +71,13 @@ node_table! {
     "Per Particle (Array) Attributes" {
         /// Initial positions in world space, if `position0` is not set.
         POSITION: Vec<[f64; 3]> = vectors("position", "pos").unit("scene units").solved("nucleus_graph::compile");
-        /// Initial velocities in world space, if `velocity0` is not set.
+        /// Initial velocities in world space, if `velocity0` is not set: one for each point, or one for all.
         VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel").unit("scene units/s").solved("nucleus_graph::compile");
     }
     "Initial State" {
         /// Initial positions in world space. Of an OBJ file, the points are taken.
         POSITION0: Vec<[f64; 3]> = vectors("position0", "pos0").unit("scene units").solved("nucleus_graph::compile");
-        /// Initial velocities in world space.
+        /// Initial velocities in world space: one for each point, or one for all.
         VELOCITY0: Vec<[f64; 3]> = vectors("velocity0", "vel0").unit("scene units/s").solved("nucleus_graph::compile");
         /// Lower corner of a box that a grid of particles fills; Minimum Corner of Maya's particle tool.
         MINIMUM_CORNER: [f64; 3] = vector("minimumCorner", "minimumCorner", [0.0, 0.0, 0.0], ["minimumCornerX", "minimumCornerY", "minimumCornerZ"]).unit("scene units").solved("nucleus_graph::compile").fixed().extension();

@@ -151,7 +151,8 @@ impl Compiler<'_> {
         Some(Start { positions: positions?, velocities: velocities? })
     }
 
-    /// One vector per point in metres or metres per second, or none; `None` after an error, which is reported.
+    /// One vector per point in metres or metres per second, or none; `None` after an error, which is reported. One velocity
+    /// counts for all points.
     pub(super) fn start_vectors(
         &mut self,
         cloth: NodeId,
@@ -159,7 +160,13 @@ impl Compiler<'_> {
         points: usize,
         key: &Key<Vec<[f64; 3]>>,
     ) -> Option<Vec<Vector3<f64>>> {
-        let vectors = self.vectors(cloth, key);
+        let mut vectors = self.vectors(cloth, key);
+        let is_velocity = key.row.unit == n_base::START_VELOCITIES.row.unit;
+        if let Ok(column) = &mut vectors
+            && let (&[velocity], true) = (&column[..], is_velocity)
+        {
+            column.resize(points, velocity);
+        }
         let [name, mesh] = [cloth, mesh].map(|node| self.scene.graph.node(node).name());
         let label = format!("`{}` of `{name}`", key.row.name);
         let metres = |vectors: Vec<[f64; 3]>| -> Vec<Vector3<f64>> {
@@ -168,7 +175,11 @@ impl Compiler<'_> {
         let is_far = |metres: &Vector3<f64>| metres.amax() > MAX_COORDINATE;
         let checked = vectors.map(metres).and_then(|column| match column.iter().position(is_far) {
             _ if !column.is_empty() && column.len() != points => {
-                Err(format!("{label} has {} vectors, but `{mesh}` has {points} points", column.len()))
+                let or = if is_velocity { ", or one for all" } else { "" };
+                let found = column.len();
+                Err(format!(
+                    "{label} has {found} vectors, but `{mesh}` has {points} points: give one for each{or}"
+                ))
             }
             Some(point) => Err(format!("{label} is more than {MAX_COORDINATE:e} m at point {point}")),
             None => Ok(column),

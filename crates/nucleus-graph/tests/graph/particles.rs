@@ -37,6 +37,19 @@ fn particles_start_where_their_node_says_and_fall() {
 }
 
 #[test]
+fn one_velocity_counts_for_all_particles() {
+    let moved = |velocities: &str| {
+        let nodes = format!(
+            r#""n": nucleus(gravity: 0), "q": nParticle(position: [(1, 2, 3), (4, 5, 6)], velocity0: {velocities}, drag: 0)"#
+        );
+        places(&program(&of_nodes(&nodes, "")), 1)
+    };
+    let both = moved("[(0, 0, 24)]");
+    assert!(both.iter().zip([4.0, 7.0]).all(|(place, z)| (place[2] - z).abs() < 1e-4), "{both:?}");
+    assert_eq!(both, moved("[(0, 0, 24), (0, 0, 24)]"));
+}
+
+#[test]
 fn particles_that_are_not_dynamic_stay_where_they_are_and_none_are_emitted() {
     let nodes = |dynamic: &str| {
         format!(
