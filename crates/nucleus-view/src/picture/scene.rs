@@ -125,6 +125,9 @@ pub struct Bounds {
     pub high: [f32; 3],
 }
 
+/// Number of particles from which on a camera leaves some out.
+const FEW: usize = 20;
+
 impl Default for Bounds {
     fn default() -> Self {
         Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] }
@@ -132,14 +135,16 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// The box around the simulated objects, cloths and particles; around all objects if none is simulated.
+    /// The box around the simulated objects, cloths and most particles; around all objects if none is simulated.
     pub fn of_interest(objects: &[Object]) -> Self {
         let mut simulated = Self::default();
         let mut all = Self::default();
         for object in objects {
             all.include(object.positions);
-            if object.kind != Kind::Collider {
-                simulated.include(object.positions);
+            match object.kind {
+                Kind::Cloth => simulated.include(object.positions),
+                Kind::Particles => simulated.merge(&Self::of_most(object.positions)),
+                Kind::Collider => {}
             }
         }
         if simulated.is_empty() { all } else { simulated }
@@ -161,6 +166,26 @@ impl Bounds {
             }
         }
         framed
+    }
+
+    /// The box that has 95 % of the points below and above each of its sides: a few stray drops must not make everything
+    /// else small. Of fewer than [`FEW`] points it has all.
+    fn of_most(positions: &[[f32; 3]]) -> Self {
+        let mut all = Self::default();
+        all.include(positions);
+        let beyond = positions.len() / 20;
+        if positions.len() < FEW || all.is_empty() {
+            return all;
+        }
+        for axis in 0..3 {
+            let drawable = positions.iter().filter(|point| is_drawable(point));
+            let mut along: Vec<f32> = drawable.map(|point| point[axis]).collect();
+            let last = along.len() - 1;
+            let low = beyond.min(last);
+            all.low[axis] = *along.select_nth_unstable_by(low, f32::total_cmp).1;
+            all.high[axis] = *along.select_nth_unstable_by(last.saturating_sub(beyond), f32::total_cmp).1;
+        }
+        all
     }
 
     /// Extends the box to points. Points that cannot be drawn are ignored.
@@ -269,6 +294,19 @@ mod tests {
             Bounds { low: [-2.5, -4.0, -2.5], high: [2.5, 1.0, 2.5] },
             "a whole table"
         );
+    }
+
+    #[test]
+    fn a_few_stray_particles_are_not_framed() {
+        let faces = Faces::default();
+        let mut drops: Vec<[f32; 3]> = (0..100).map(|k| [k as f32 / 99.0, 0.5, -0.5]).collect();
+        let framed = |drops: &[[f32; 3]]| Bounds::to_frame(&[object(Kind::Particles, &faces, drops)]);
+        let before = framed(&drops);
+        assert!(before.low[0] > 0.0 && before.high[0] < 1.0 && before.extent() > 0.85, "{before:?}");
+        drops[..3].copy_from_slice(&[[900.0, 0.0, 0.0], [0.0, -700.0, 0.0], [f32::NAN; 3]]);
+        let after = framed(&drops);
+        assert!(after.low.iter().chain(&after.high).all(|x| x.abs() <= 1.0), "{after:?}");
+        assert_eq!(framed(&drops[..10]).high[0], 900.0, "of few, all are framed");
     }
 
     #[test]
