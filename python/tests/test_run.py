@@ -3,11 +3,13 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 import nucleus
+from nucleus._run import problems_of
 
 
 def test_a_run_has_the_bytes_of_the_command(folder):
@@ -75,6 +77,43 @@ def test_a_scene_in_memory_is_run_and_leaves_no_file(folder):
     nucleus.run(scene, frames=3, out="two.mcap")
     assert (folder / "one.mcap").read_bytes() == (folder / "two.mcap").read_bytes()
     assert sorted(path.name for path in folder.glob("*.ron")) == ["drape.ron"]
+
+
+def test_a_failed_check_without_a_frame_has_the_words_of_the_command():
+    check = {"check": "atRestBy(frame: 9)", "passed": False, "figure": None, "frame": None}
+    assert problems_of({"ending": "done", "checks": [check]}) == [
+        "check atRestBy(frame: 9) failed, no frame was evaluated"
+    ]
+
+
+def test_threads_run_the_same_scene_in_memory_at_once(folder):
+    text = (folder / "drape.ron").read_text() + "// in memory\n"
+
+    def run(number):
+        # The longer runs still read their scene when the first one has ended.
+        return nucleus.run(nucleus.Scene(text), frames=2 + number, out=f"{number}.mcap", threads=1)
+
+    with ThreadPoolExecutor(6) as pool:
+        runs = list(pool.map(run, range(6)))
+    assert all(one.ok and one.open().scene == text for one in runs)
+    assert sorted(path.name for path in folder.glob("*.ron")) == ["drape.ron"]
+
+
+def test_a_scene_in_memory_does_not_remove_the_file_of_a_wedge(folder):
+    scene = nucleus.Scene.read("drape.ron")
+    scene["cloth1"]["friction"] = 0.7
+    nucleus.wedge(scene, {"cloth1.bendResistance": [1]}, out="w", frames=2)
+    kept = sorted(folder.glob("*.ron"))
+    assert len(kept) == 2
+    nucleus.run(scene, frames=2)
+    assert sorted(folder.glob("*.ron")) == kept
+    assert len(nucleus.wedge(out="w", resume=True)) == 1
+
+
+def test_a_scene_in_memory_that_cannot_be_written_is_refused_with_the_folder_and_the_way_out(folder):
+    scene = nucleus.Scene((folder / "drape.ron").read_text(), "none/scene.ron")
+    with pytest.raises(FileNotFoundError, match="folder `none`.* relative to its file.*nucleus.Scene"):
+        nucleus.run(scene)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")

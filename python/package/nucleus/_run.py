@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import os
+import threading
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,7 +51,9 @@ def problems_of(report: Mapping[str, Any]) -> list[str]:
     """What is wrong with a run, in words."""
     found = [] if report.get("ending") in ("done", "interrupted") else [f"the run ended early: {report.get('ending')}"]
     for check in report.get("checks") or []:
-        if check["passed"] is False:
+        if check["passed"] is False and check["frame"] is None:
+            found.append(f"check {check['check']} failed, no frame was evaluated")
+        elif check["passed"] is False:
             found.append(f"check {check['check']} failed with {check['figure']} at frame {check['frame']}")
     return [*found, *(report.get("unresolved_contact") or [])]
 
@@ -57,22 +61,65 @@ def problems_of(report: Mapping[str, Any]) -> list[str]:
 @contextmanager
 def scene_file(scene: Scene, keep: bool = False) -> Iterator[str]:
     """The path of a scene. A scene in memory is written beside the files that it reads, and removed unless kept."""
-    folder, name = os.path.split(scene.path)
     if os.path.isfile(scene.path):
         with open(scene.path, encoding="utf-8") as file:
             if file.read() == scene.text:
                 yield scene.path
                 return
-    # The name is part of the cache, and equal runs have equal bytes.
-    digest = hashlib.sha256(scene.text.encode()).hexdigest()[:12]
-    path = os.path.join(folder, f"{os.path.splitext(name)[0]}.{digest}.ron")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(scene.text)
+    path = _written(scene, keep)
     try:
         yield path
     finally:
         if not keep:
             os.unlink(path)
+
+
+def _written(scene: Scene, keep: bool) -> str:
+    """Writes a scene beside the files that it reads, and returns the path."""
+    # The name is part of the cache, and equal runs have equal bytes.
+    digest = hashlib.sha256(scene.text.encode()).hexdigest()[:12]
+    stem = f"{os.path.splitext(scene.path)[0]}.{digest}"
+    try:
+        return _kept(scene.text, stem) if keep else _own(scene.text, stem)
+    except OSError as error:
+        folder = os.path.dirname(scene.path) or os.curdir
+        why = (
+            f"cannot write the scene to the folder `{folder}`: {error.strerror}. A scene that is not a file is written there for "
+            "the run, since it reads meshes and maps relative to its file. Copy what it reads to a folder that can be written, "
+            "and make the scene with a `path` in it: nucleus.Scene(text, path)"
+        )
+        raise OSError(error.errno, why) from error
+
+
+def _own(text: str, stem: str) -> str:
+    """Writes a file that no other run uses: one that runs at the same time has the next number in its name."""
+    for number in itertools.count(1):
+        path = f"{stem}.ron" if number == 1 else f"{stem}.{number}.ron"
+        try:
+            with open(path, "x", encoding="utf-8") as file:
+                file.write(text)
+            return path
+        except FileExistsError:
+            continue
+    raise AssertionError("numbers do not end")
+
+
+def _kept(text: str, stem: str) -> str:
+    """Writes the file of a wedge, which has the same name when it is continued. No reader sees half of it."""
+    path, part = f"{stem}.wedge.ron", f"{stem}.{os.getpid()}.{threading.get_ident()}.part"
+    with open(part, "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(part, path)
+    return path
+
+
+def mapping_of(values: Optional[Mapping[str, Any]], name: str, example: str) -> Mapping[str, Any]:
+    """Values by node and attribute; none for ``None``."""
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping):
+        raise TypeError(f"`{name}` takes a dict such as {example}, not {type(values).__name__}")
+    return values
 
 
 def option(name: str, value: Any) -> list[str]:
@@ -137,11 +184,12 @@ def run(
             if on_frame is not None:
                 on_frame(found)
 
+    assignments = mapping_of(set, "set", '{"cloth1.bendResistance": 2}')
     known = as_scene(scene)  # names all mistakes before anything starts
     with scene_file(known) as path:
         default = Path(known.path).stem + ".mcap"
         arguments = ["run", path, "--json", f"--out={os.fspath(out or default)}"]
-        for plug, value in (set or {}).items():
+        for plug, value in assignments.items():
             arguments.append(f"--set={plug}={assigned(value)}")
         options = {"--frames": frame_range(frames), "--seed": seed, "--from": start_from, "--record": record}
         options |= {"--velocities": velocities, "--checkpoint": checkpoint, "--audit": audit}

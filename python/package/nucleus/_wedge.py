@@ -6,11 +6,11 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 from . import _cache, _command
 from ._errors import RunError
-from ._run import assigned, error_of, frame_range, option, problems_of, scene_file
+from ._run import assigned, error_of, frame_range, mapping_of, option, problems_of, scene_file
 from ._scene import SceneLike, as_scene
 
 
@@ -79,9 +79,8 @@ def wedge(
         KeyboardInterrupt: after Ctrl-C; ``resume=True`` continues.
     """
     arguments = ["wedge", f"--out={os.fspath(out)}"]
-    for plug, values in (vary or {}).items():
-        written = values if isinstance(values, str) else ",".join(assigned(value) for value in values)
-        arguments.append(f"--vary={plug}={written}")
+    for plug, values in mapping_of(vary, "vary", '{"cloth1.bendResistance": [1, 2]}').items():
+        arguments.append(f"--vary={plug}={_varied(plug, values)}")
     named = {"--samples": samples, "--sampling": sampling, "--seeds": seeds, "--seed": seed}
     named |= {"--frames": frame_range(frames), "--record": record, "--jobs": jobs, "--threads": threads}
     for name, value in {**named, "--continue": resume}.items():
@@ -98,6 +97,17 @@ def wedge(
     if code not in (0, 1):
         raise RunError(error_of(messages), messages)
     return read_wedge(out)
+
+
+def _varied(plug: str, values: Union[str, Sequence[Any]]) -> str:
+    """The values of an attribute in the syntax of the command."""
+    if isinstance(values, str):
+        return values
+    # An array of numpy without dimensions has `__iter__`, but no elements.
+    if not isinstance(values, Iterable) or getattr(values, "shape", None) == ():
+        kind = type(values).__name__
+        raise TypeError(f'`{plug}` takes a list of values, or a text such as "0..20/5", not {kind}')
+    return ",".join(assigned(value) for value in values)
 
 
 def read_wedge(out: Union[str, os.PathLike[str]]) -> list[WedgeRun]:
