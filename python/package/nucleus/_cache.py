@@ -17,8 +17,8 @@ class Cache:
     """A cache of a run.
 
     >>> cache = open_cache("tablecloth.mcap")  # doctest: +SKIP
-    >>> cache.positions("cloth1", frame=10).shape  # doctest: +SKIP
-    (441, 3)
+    >>> cache.positions("tablecloth", frame=10).shape  # doctest: +SKIP
+    (7225, 3)
     """
 
     def __init__(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -27,7 +27,10 @@ class Cache:
         Raises:
             OSError: when it cannot be read.
         """
-        self.path = os.fspath(path)
+        self.path = os.fsdecode(path)
+        # A pipe would wait for a writer, and not for Ctrl-C.
+        if os.path.exists(self.path) and not (os.path.isfile(self.path) or os.path.isdir(self.path)):
+            raise OSError(f"cannot open `{self.path}`: it is not a regular file")
         self._cache = _nucleus.Playback(self.path)
         self._facts: dict[str, Any] = json.loads(self._cache.facts())
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Sequence
+from typing import Any, Optional, Sequence
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,10 @@ class SceneError(NucleusError, ValueError):
         self.diagnostics = list(diagnostics)
         errors = [one for one in self.diagnostics if one.severity == "error"]
         super().__init__("\n".join(map(str, errors or self.diagnostics)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # An exception is rebuilt from its text by default, and this one takes diagnostics.
+        return type(self), (self.diagnostics,)
 
 
 class RunError(NucleusError, RuntimeError):
