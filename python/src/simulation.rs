@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
-use nucleus_core::{StateView, StepObserver, SubstepIndex};
+use nucleus_core::{MAX_COORDINATE, StateView, StepObserver, SubstepIndex};
 use nucleus_graph::audit::Closeness;
 use nucleus_graph::checks::{Check, Judge, Outcome};
 use nucleus_graph::compile::{Object, ObjectKind, Program};
@@ -90,13 +90,32 @@ impl Run {
         }
     }
 
-    /// Advances one frame, with the colliders that were given. Returns the report as JSON, or the signal that arrived.
-    fn advance(&mut self) -> Result<String, PyErr> {
+    /// Refuses a run whose state is in the middle of a time step.
+    fn whole(&mut self) -> PyResult<&mut Self> {
         if self.is_broken {
             let why =
                 "the simulation was interrupted within a frame: restore a saved state, or make a new one";
             return Err(PyRuntimeError::new_err(why));
         }
+        Ok(self)
+    }
+
+    /// The state as bytes. They have no place for a move that the next frame has yet to make, which would be lost.
+    fn save(&mut self) -> PyResult<Vec<u8>> {
+        let run = self.whole()?;
+        let Some(object) = run.moved.keys().next() else {
+            return Ok(run.simulation.save());
+        };
+        let name = &run.simulation.objects()[*object].name;
+        Err(PyRuntimeError::new_err(format!(
+            "`{name}` is to move during the next frame, which a saved state does not hold: save before `move_collider`, or \
+             after the next `step`"
+        )))
+    }
+
+    /// Advances one frame, with the colliders that were given. Returns the report as JSON, or the signal that arrived.
+    fn advance(&mut self) -> PyResult<String> {
+        self.whole()?;
         let frame = self.simulation.next_frame();
         let moved: Vec<(usize, Vec<Vector3<f64>>)> = std::mem::take(&mut self.moved)
             .into_iter()
@@ -244,6 +263,7 @@ impl Simulation {
     /// there in a straight line from where it is.
     fn move_collider(&self, py: Python, name: &str, points: &[u8]) -> PyResult<()> {
         self.with(py, |run| {
+            let run = run.whole()?;
             let index = run.object(name)?;
             let object = &run.simulation.objects()[index];
             let refused = |why: String| Err(PyValueError::new_err(why));
@@ -273,15 +293,22 @@ impl Simulation {
             if let Some(bad) = points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
                 return refused(format!("the position of point {bad} of `{name}` is not finite"));
             }
+            // The solver keeps a point where it is rather than move it this far, and only counts that.
+            let is_far = |point: &Vector3<f64>| point.amax() > MAX_COORDINATE;
+            if let Some(far) = points.iter().position(is_far) {
+                let limit = MAX_COORDINATE * units;
+                return refused(format!(
+                    "point {far} of `{name}` is too far away: coordinates are at most {limit:e} ({MAX_COORDINATE:e} m)"
+                ));
+            }
             run.moved.insert(index, points);
             Ok(())
         })
     }
 
     /// The state as bytes, to continue later with the same bits.
-    fn save<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let bytes = self.with(py, |run| run.simulation.save());
-        PyBytes::new(py, &bytes)
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.with(py, Run::save)?))
     }
 
     /// Continues from a saved state.

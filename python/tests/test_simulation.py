@@ -1,3 +1,6 @@
+import os
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -96,6 +99,63 @@ def test_a_saved_state_continues_with_the_same_bits(folder):
     assert np.array_equal(simulation.positions("cloth1"), expected)
     with pytest.raises(nucleus.NucleusError, match="cannot restore"):
         simulation.restore(b"nothing")
+
+
+def test_a_state_is_not_saved_while_a_move_waits(folder):
+    simulation = nucleus.Simulation("drape.ron", threads=1)
+    start = simulation.positions("rigid1").copy()
+    state = simulation.save()
+    simulation.move_collider("rigid1", start + [0, 2, 0])
+    with pytest.raises(RuntimeError, match="`rigid1` is to move during the next frame"):
+        simulation.save()
+    simulation.step()
+    assert simulation.save() != state
+    # A state that is restored has no move that waits.
+    simulation.move_collider("rigid1", start)
+    simulation.restore(state)
+    assert simulation.save() == state
+
+
+def test_a_collider_is_not_moved_beyond_the_range_of_the_solver(folder):
+    simulation = nucleus.Simulation("drape.ron", threads=1)
+    far = simulation.positions("rigid1").astype(np.float64)
+    far[3, 1] = -1e14  # 1e12 m in centimetres
+    simulation.move_collider("rigid1", far)
+    far[3, 1] *= 1.01
+    with pytest.raises(ValueError, match="point 3 of `rigid1` is too far away: coordinates are at most 1e14 "):
+        simulation.move_collider("rigid1", far)
+
+
+INTERRUPTED = """
+import os, signal, threading
+import nucleus
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+text = open("drape.ron").read()
+simulation = nucleus.Simulation(nucleus.Scene(text.replace("subSteps: 2", "subSteps: 90000")), threads=1)
+start, state = simulation.positions("rigid1"), simulation.save()
+threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    simulation.step()
+    print("not interrupted")
+except KeyboardInterrupt:
+    pass
+for refused in (simulation.step, simulation.save, lambda: simulation.move_collider("rigid1", start)):
+    try:
+        refused()
+    except RuntimeError as error:
+        print(error)
+simulation.restore(state)
+print(simulation.save() == state)
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_an_interrupted_simulation_is_neither_saved_nor_moved_until_it_is_restored(folder):
+    command = [sys.executable, "-c", INTERRUPTED]
+    said = subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stdout
+    refusal = "the simulation was interrupted within a frame: restore a saved state, or make a new one"
+    assert said.splitlines() == [refusal] * 3 + ["True"]
 
 
 def test_the_interpreter_is_free_while_a_frame_is_solved(folder):

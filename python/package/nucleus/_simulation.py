@@ -25,9 +25,13 @@ class Simulation:
 
     The interpreter lock is released while a frame is solved. Ctrl-C ends the frame that is being solved.
 
+    The scene is read once: values that are set in it later have no effect on this simulation. Values that change with time
+    are keys or expressions of the scene. To go on with other values, :meth:`restore` the state in a simulation of the changed
+    scene.
+
     >>> simulation = Simulation("scenes/cloth/tablecloth.ron")  # doctest: +SKIP
     >>> for report in simulation:  # doctest: +SKIP
-    ...     print(simulation.frame, simulation.positions("cloth1")[:, 1].min())
+    ...     print(simulation.frame, simulation.positions("tablecloth")[:, 1].min())
     """
 
     def __init__(
@@ -112,7 +116,8 @@ class Simulation:
 
         Raises:
             TypeError: when the positions are not numbers.
-            ValueError: when the shape is not ``(n, 3)`` with one row per point, or a number is not finite.
+            ValueError: when the shape is not ``(n, 3)`` with one row per point, or a number is not finite or beyond 1e12 m.
+            RuntimeError: when the last frame was interrupted.
         """
         array = np.asarray(positions)
         if array.dtype.kind not in "fiu":
@@ -122,14 +127,20 @@ class Simulation:
         self._run.move_collider(name, np.ascontiguousarray(array, dtype=np.float64).tobytes())
 
     def save(self) -> bytes:
-        """The state as bytes, to continue later with the same bits."""
+        """The state as bytes, to continue later with the same bits.
+
+        Raises:
+            RuntimeError: when the last frame was interrupted, or :meth:`move_collider` waits for the next frame.
+        """
         return self._run.save()
 
     def restore(self, state: bytes) -> None:
-        """Continues from a state of the same scene.
+        """Continues from a state of the same scene, or of one with the same objects and other values.
+
+        The state holds positions and velocities. Gravity, friction and all other attributes are those of this simulation.
 
         Raises:
-            NucleusError: when the state is damaged, of another version, or of another scene.
+            NucleusError: when the state is damaged, of another version, or of objects with other meshes or masses.
         """
         try:
             self._run.restore(state)
