@@ -41,6 +41,7 @@ fn _nucleus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(scene::assign, module)?)?;
     module.add_function(wrap_pyfunction!(scene::value, module)?)?;
     module.add_function(wrap_pyfunction!(scene::takes_word, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::attributes, module)?)?;
     module.add_class::<array::Rows>()?;
     module.add_class::<simulation::Simulation>()?;
     module.add_class::<playback::Playback>()

@@ -140,3 +140,9 @@ pub fn takes_word(type_name: &str, attribute: &str) -> bool {
     let row = node_type(type_name).and_then(|of| of.attribute(attribute));
     row.is_some_and(|row| matches!(row.kind, Kind::Choice(_)))
 }
+
+/// The names of all attributes of a type of node. None for an unknown type.
+#[pyfunction]
+pub fn attributes(type_name: &str) -> Vec<&'static str> {
+    node_type(type_name).map_or(Vec::new(), |of| of.attributes().iter().map(|row| row.name).collect())
+}

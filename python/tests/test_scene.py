@@ -21,6 +21,16 @@ def test_attributes_are_read_and_set_and_comments_stay(folder):
     assert scene["cloth1"]["friction"] == pytest.approx(0.1)  # Maya's default
 
 
+def test_a_node_is_a_mapping_of_its_attributes(folder):
+    scene = nucleus.Scene.read("drape.ron")
+    for name in scene:
+        values = dict(scene[name])
+        assert list(values) == list(scene[name]) and "bendResistence" not in scene[name]
+    values = dict(scene["cloth1"])
+    assert (values["thickness"], values["friction"]) == (1, pytest.approx(0.1))
+    assert "translateY" in scene["sheet"]
+
+
 def test_mistakes_are_exceptions_with_place_and_suggestion(folder):
     scene = nucleus.Scene.read("drape.ron")
     before = scene.text
