@@ -6,6 +6,7 @@
 
 use nalgebra::Vector3;
 
+use super::NO_CHAMBER;
 use crate::math::{Real, Row4};
 use crate::union_find::UnionFind;
 
@@ -18,6 +19,8 @@ pub(super) struct Pieces {
     chamber: Vec<u32>,
     /// By chamber: how closed it is at the start.
     closed: Vec<f64>,
+    /// By chamber: the number of its pieces.
+    counts: Vec<u32>,
 }
 
 /// Sums of the area vectors, and of their lengths.
@@ -50,7 +53,7 @@ impl Pieces {
 
     /// Whether a chamber is in one piece.
     pub(super) fn is_one(&self, chamber: usize) -> bool {
-        self.is_empty() || self.chamber.iter().filter(|&&own| own as usize == chamber).count() == 1
+        self.counts.get(chamber).is_none_or(|&count| count == 1)
     }
 
     /// Measures how closed each chamber is; `chamber` and `area` are by point.
@@ -86,11 +89,17 @@ impl Pieces {
         let mut numbers = vec![u32::MAX; chamber.len()];
         self.chamber.clear();
         self.of_point.clear();
+        self.counts.clear();
+        self.counts.resize(
+            chamber.iter().filter(|own| **own != NO_CHAMBER).max().map_or(0, |last| *last as usize + 1),
+            0,
+        );
         for (point, &own) in (0..).zip(chamber) {
             let number = &mut numbers[sets.find(point) as usize];
             if *number == u32::MAX {
                 *number = self.chamber.len() as u32;
                 self.chamber.push(own);
+                self.counts.get_mut(own as usize).into_iter().for_each(|count| *count += 1);
             }
             self.of_point.push(*number);
         }
@@ -112,5 +121,46 @@ impl Pieces {
     /// The piece of a point.
     pub(super) fn of(&self, point: usize) -> Option<usize> {
         self.of_point.get(point).map(|&piece| piece as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn areas(vectors: &[[f64; 3]]) -> Vec<Row4<f64>> {
+        vectors.iter().map(|&[x, y, z]| Row4([x, y, z, 0.0])).collect()
+    }
+
+    #[test]
+    fn a_closed_piece_gets_all_of_the_pressure_an_open_one_a_share_and_a_scrap_none() {
+        // Six points with the area vectors of an octahedron's corners, joined by triangles.
+        let all = areas(&[
+            [1.0, 0.0, 0.0],
+            [-1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, -1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [0.0, 0.0, -1.0],
+        ]);
+        let shares = |triangles: &[[u32; 3]], clusters: &[u32]| {
+            let mut pieces = Pieces::default();
+            pieces.start(&[0; 6], &all, 1);
+            pieces.find(10, &[0; 6], triangles.iter(), clusters);
+            let shares = pieces.shares(&all);
+            (
+                (0..6).map(|point| shares[pieces.of(point).expect("a piece")]).collect::<Vec<_>>(),
+                pieces.is_one(0),
+            )
+        };
+        assert_eq!(shares(&[[10, 11, 12], [13, 14, 15], [12, 13, 14]], &[]), (vec![1.0; 6], true));
+        let (loose, is_one) = shares(&[[10, 11, 12], [13, 14, 15]], &[]);
+        assert!(!is_one && loose.iter().all(|share| (share - 2.0 / 3.0).abs() < 1e-12), "{loose:?}");
+        let (scraps, _) = shares(&[], &[]);
+        assert_eq!(scraps, [0.0; 6]);
+        // A weld joins the two halves again.
+        let mut welds: Vec<u32> = (0..16).collect();
+        welds[13] = 12;
+        assert_eq!(shares(&[[10, 11, 12], [13, 14, 15]], &welds), (vec![1.0; 6], true));
     }
 }
