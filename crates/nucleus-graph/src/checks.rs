@@ -127,7 +127,7 @@ static FORMS: [Form; 18] = [
         "noPenetration",
         &[],
         |sample| Some(sample.report.pairs_unresolved as f64),
-        "No pair of elements of cloth, or of cloth and a collider, is unresolved at the end of a time step.",
+        "No pair of elements of cloth, or of cloth and a collider, that the solver tests is unresolved at the end of a time step. Edges of a cloth are tested with each other by `selfCollisionFlag: fullSurface`, the default in Physical alone; `noSelfIntersection` counts the others.",
     ),
     at_most(
         MAX_UNRESOLVED,

@@ -1,11 +1,12 @@
 //! Settings that have no effect because another setting switches them off, or that count as less than they say: a warning
 //! says which.
 
-use crate::attributes::{Choice, Key, n_base, nucleus};
-use crate::graph::{NodeId, Setting};
+use crate::attributes::{Choice, Key, n_base, nucleus, particle};
+use crate::graph::{Graph, NodeId, Setting};
 
 use super::compiler::Compiler;
 use super::dependencies::{DEPENDENCIES, Dependency, Need};
+use super::particle_ramps::is_event_target;
 use super::units::CLASSIC;
 
 impl Compiler<'_> {
@@ -39,6 +40,7 @@ impl Compiler<'_> {
                     let names: Vec<String> = rows.iter().map(|row| format!("`{}`", row.name)).collect();
                     format!("it needs {}", names.join(" or "))
                 }
+                Need::Births if !is_born(graph, object) => "no particles are born".to_owned(),
                 Need::Classic if !is_classic => "`resistanceModel` is physical".to_owned(),
                 Need::Physical if is_classic => "`resistanceModel` is classic".to_owned(),
                 _ => continue,
@@ -89,6 +91,11 @@ impl Compiler<'_> {
                 .help("above 1 every contact would add energy; a field or `localForce` drives objects apart");
         }
     }
+}
+
+/// Whether an emitter or an event may add particles to an object.
+fn is_born(graph: &Graph, object: NodeId) -> bool {
+    !graph.elements(object, &particle::NEW_PARTICLES).is_empty() || is_event_target(graph, object)
 }
 
 fn is_one(value: Choice, wanted: Option<Choice>) -> bool {

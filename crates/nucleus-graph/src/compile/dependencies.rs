@@ -13,6 +13,8 @@ pub(super) enum Need {
     Choice(&'static Key<Choice>, Option<Choice>),
     /// A switch that is ever on.
     On(&'static Key<bool>),
+    /// Particles that are born: by an emitter, or by an event.
+    Births,
     /// Any of some other attributes, given.
     Given(&'static [&'static Attribute]),
     /// The Classic resistance model.
@@ -38,11 +40,11 @@ const LISTED: Choice = Choice(3);
 /// `emitterType`.
 const VOLUME: Choice = Choice(4);
 
-/// A ramp of particles, which has no effect without an input.
+/// A ramp of particles and the end of its range, which have no effect without an input.
 macro_rules! ramp {
-    ($ramp:ident over $input:ident) => {
+    ($ramp:ident up to $most:ident over $input:ident) => {
         Dependency {
-            rows: &[&n_particle::$ramp.row],
+            rows: &[&n_particle::$ramp.row, &n_particle::$most.row],
             need: Need::Choice(&n_particle::$input, None),
             help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
         }
@@ -216,16 +218,27 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
         need: Need::On(&n_particle::ENABLE_SPH),
         help: "write `enableSPH: true`",
     },
-    ramp!(MASS_SCALE over MASS_SCALE_INPUT),
-    ramp!(FRICTION_SCALE over FRICTION_SCALE_INPUT),
-    ramp!(STICKINESS_SCALE over STICKINESS_SCALE_INPUT),
-    ramp!(COLLIDE_STRENGTH_SCALE over COLLIDE_STRENGTH_SCALE_INPUT),
-    ramp!(BOUNCE_SCALE over BOUNCE_SCALE_INPUT),
-    ramp!(VISCOSITY_SCALE over VISCOSITY_SCALE_INPUT),
-    ramp!(SURFACE_TENSION_SCALE over SURFACE_TENSION_SCALE_INPUT),
-    ramp!(OPACITY_SCALE over OPACITY_SCALE_INPUT),
-    ramp!(RADIUS_SCALE over RADIUS_SCALE_INPUT),
-    ramp!(POINT_FIELD_SCALE over POINT_FIELD_SCALE_INPUT),
+    Dependency {
+        rows: &[
+            &particle::SEED.row,
+            &particle::MAX_COUNT.row,
+            &particle::LEVEL_OF_DETAIL.row,
+            &particle::INHERIT_FACTOR.row,
+            &n_particle::EMISSION_OVERLAP_PRUNING.row,
+        ],
+        need: Need::Births,
+        help: "let a pointEmitter emit them: `target: \"nParticle1\"` of the emitter",
+    },
+    ramp!(MASS_SCALE up to MASS_SCALE_INPUT_MAX over MASS_SCALE_INPUT),
+    ramp!(FRICTION_SCALE up to FRICTION_SCALE_INPUT_MAX over FRICTION_SCALE_INPUT),
+    ramp!(STICKINESS_SCALE up to STICKINESS_SCALE_INPUT_MAX over STICKINESS_SCALE_INPUT),
+    ramp!(COLLIDE_STRENGTH_SCALE up to COLLIDE_STRENGTH_SCALE_INPUT_MAX over COLLIDE_STRENGTH_SCALE_INPUT),
+    ramp!(BOUNCE_SCALE up to BOUNCE_SCALE_INPUT_MAX over BOUNCE_SCALE_INPUT),
+    ramp!(VISCOSITY_SCALE up to VISCOSITY_SCALE_INPUT_MAX over VISCOSITY_SCALE_INPUT),
+    ramp!(SURFACE_TENSION_SCALE up to SURFACE_TENSION_SCALE_INPUT_MAX over SURFACE_TENSION_SCALE_INPUT),
+    ramp!(OPACITY_SCALE up to OPACITY_SCALE_INPUT_MAX over OPACITY_SCALE_INPUT),
+    ramp!(RADIUS_SCALE up to RADIUS_SCALE_INPUT_MAX over RADIUS_SCALE_INPUT),
+    ramp!(POINT_FIELD_SCALE up to POINT_FIELD_SCALE_INPUT_MAX over POINT_FIELD_SCALE_INPUT),
     Dependency {
         rows: &[&field::USE_MAX_DISTANCE.row],
         need: Need::Number(&field::MAX_DISTANCE),

@@ -327,6 +327,14 @@ fn settings_without_effect_are_warned_of_with_the_setting_that_is_missing() {
             "`viscosity` of `x` has no effect: `enableSPH` is false",
         ),
         (
+            "nParticle(position: [(1, 0, 0)], radiusScaleInputMax: 4)",
+            "`radiusScaleInputMax` of `x` has no effect: `radiusScaleInput` is off",
+        ),
+        (
+            "nParticle(position: [(1, 0, 0)], maxCount: 4)",
+            "`maxCount` of `x` has no effect: no particles are born",
+        ),
+        (
             "nParticle(position: [(1, 0, 0)], radiusScale: [(0, 1), (1, 0)])",
             "`radiusScale` of `x` has no effect: `radiusScaleInput` is off",
         ),

@@ -25,6 +25,8 @@ struct Properties {
     is_on_surface: bool,
     /// `localCollide` is off.
     passes: bool,
+    /// Joined edges never resist folding.
+    folds_freely: bool,
 }
 
 /// Attributes without effect on constraints with a property.
@@ -92,6 +94,12 @@ static UNUSED: &[Unused] = &[
         help: "write `restLengthScale: 0` instead of a constant rest length",
     },
     Unused {
+        rows: &[&con::BEND_STRENGTH.row, &con::BEND_BREAK_ANGLE.row],
+        when: |constraint| constraint.folds_freely,
+        because: "`bend` is false",
+        help: "write `bend: true`",
+    },
+    Unused {
         rows: &[&con::COLLIDE_WIDTH_SCALE.row],
         when: |constraint| constraint.passes,
         because: "`localCollide` is false",
@@ -134,6 +142,7 @@ impl Compiler<'_> {
             stays: !values.slides() && !graph.changes(constraint, &con::CONNECTION_UPDATE),
             is_loose: values.slides() && !grips && never(&con::CONSTRAINT_METHOD, kinds::WELD),
             has_no_surface: to_space || members.iter().all(|member| member.kind != ElementKind::Face),
+            folds_freely: !graph.is_ever_nonzero(constraint, &con::BEND) && values.kind != kinds::TEARABLE,
             passes: !values.toggle(&con::LOCAL_COLLIDE) && !graph.changes(constraint, &con::LOCAL_COLLIDE),
         }
     }

@@ -54,6 +54,10 @@ fn an_attribute_that_a_constraint_of_its_kind_does_not_use_is_a_warning() {
             vec![("collideWidthScale", "`localCollide` is false")],
         ),
         (
+            format!("type: pointToPoint, {both}, bendStrength: 5, bendBreakAngle: 30"),
+            vec![("bendStrength", "`bend` is false"), ("bendBreakAngle", "`bend` is false")],
+        ),
+        (
             format!("type: pointToPoint, {both}, restLength: 1"),
             vec![("restLength", "`restLengthMethod` is fromStartDistance")],
         ),
@@ -82,6 +86,7 @@ fn attributes_that_a_constraint_uses_or_that_have_their_default_are_no_warnings(
         format!("type: pointToPoint, {both}, restLengthMethod: constant, restLength: 1"),
         format!("type: slideOnSurface, {both}, constraintMethod: weld, tangentStrength: 0, friction: 1"),
         format!("type: pointToPoint, {both}, connectionDensity: 0.5, restLengthScale: 0.5"),
+        r#"type: tearableSurface, components: ["cloth1"], bendStrength: 5, bendBreakAngle: 30"#.to_owned(),
     ] {
         assert_eq!(of_constraint(&attributes), Vec::<String>::new(), "{attributes}");
     }
