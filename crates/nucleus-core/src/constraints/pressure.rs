@@ -36,7 +36,7 @@ use crate::parallel::thread_pool::ThreadPool;
 use crate::state::{Chamber, State};
 
 use holes::{boundary_loops, cap_area, cap_corner, cap_volume};
-use pieces::Pieces;
+use pieces::{NO_CHAMBER, Pieces};
 
 /// Pascals for a `pressure`, `startPressure` or `incompressibility` of 1.
 pub const PASCALS_PER_PRESSURE: f64 = 1000.0;
@@ -83,8 +83,6 @@ struct Hole {
     corners: Vec<u32>,
     chamber: u32,
 }
-
-const NO_CHAMBER: u32 = u32::MAX;
 
 /// Sums over a chamber in one time step.
 #[derive(Clone, Copy, Default)]

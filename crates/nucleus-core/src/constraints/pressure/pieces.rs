@@ -6,9 +6,11 @@
 
 use nalgebra::Vector3;
 
-use super::NO_CHAMBER;
 use crate::math::{Real, Row4};
 use crate::union_find::UnionFind;
+
+/// The chamber of a point of no face.
+pub(super) const NO_CHAMBER: u32 = u32::MAX;
 
 /// Which piece each point of a cloth is in; empty where the mesh cannot tear.
 #[derive(Debug, Clone, Default)]
