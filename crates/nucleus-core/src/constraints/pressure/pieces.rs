@@ -1,8 +1,9 @@
 //! The pieces of a mesh that tears: pressure pushes a piece as far as it is closed.
 //!
-//! The area vectors of a closed surface add up to zero, those of a flat piece to its whole area. What is left of
-//! 1 - |Σ a| / Σ |a|, in relation to that of the mesh at the start, is the share of the pressure that a piece gets: a scrap in
-//! open air has the same pressure on both sides.
+//! The area vectors of a closed surface add up to zero, those of a flat piece to its whole area. A sphere from which a cap is
+//! cut is closed by 1 - |Σ a| / Σ |a|: one less the share of the solid angle that the hole has. In relation to that of the mesh
+//! at the start, a piece gets all of the pressure while it is closed, and none from half a sphere on: a scrap in open air has
+//! the same pressure on both sides.
 
 use nalgebra::Vector3;
 
@@ -114,7 +115,7 @@ impl Pieces {
             sums[piece as usize].add(area);
         }
         let share = |(sums, &chamber): (&AreaSums, &u32)| match self.closed.get(chamber as usize) {
-            Some(&closed) if closed > SHEET => (sums.closed() / closed).min(1.0),
+            Some(&closed) if closed > SHEET => (2.0 * sums.closed() / closed - 1.0).clamp(0.0, 1.0),
             _ => 1.0,
         };
         sums.iter().zip(&self.chamber).map(share).collect()
@@ -157,7 +158,7 @@ mod tests {
         };
         assert_eq!(shares(&[[10, 11, 12], [13, 14, 15], [12, 13, 14]], &[]), (vec![1.0; 6], true));
         let (loose, is_one) = shares(&[[10, 11, 12], [13, 14, 15]], &[]);
-        assert!(!is_one && loose.iter().all(|share| (share - 2.0 / 3.0).abs() < 1e-12), "{loose:?}");
+        assert!(!is_one && loose.iter().all(|share| (share - 1.0 / 3.0).abs() < 1e-12), "{loose:?}");
         let (scraps, _) = shares(&[], &[]);
         assert_eq!(scraps, [0.0; 6]);
         // A weld joins the two halves again.
