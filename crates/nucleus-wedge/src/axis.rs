@@ -328,7 +328,7 @@ mod tests {
         );
         assert_eq!(steps("n.subSteps=1..3/5"), ["1", "2", "3"], "whole numbers occur once");
         assert_eq!(steps("n.windSpeed=5..-5/3"), ["5", "0", "-5"]);
-        assert_eq!(steps("c.preset=silk,denim"), ["\"silk\"", "\"denim\""]);
+        assert_eq!(steps("c.preset=silk,rubberSheet"), ["\"silk\"", "\"rubberSheet\""]);
         assert!(axis("c.damp=0..1/3000000000").unwrap_err().ends_with("a range has at most 1000000 values"));
     }
 
