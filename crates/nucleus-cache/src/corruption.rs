@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::messages::metadata;
+
 /// Which parts of a cache are missing or damaged. A run that was interrupted but closed has lost nothing.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -18,7 +20,7 @@ pub struct CorruptionReport {
     pub meshes: Vec<String>,
     /// Objects that are lost entirely.
     pub objects: Vec<String>,
-    /// What damaged or missing records of the run hold, which is left out: `the texture coordinates`, for instance.
+    /// Names of the records of the run that are damaged or missing, `nucleus.uvs` for instance. What they hold is left out.
     pub records: Vec<&'static str>,
     /// Number of damaged redundant copies: nothing is lost by them alone.
     pub copies: usize,
@@ -84,7 +86,8 @@ impl fmt::Display for CorruptionReport {
             parts.push(format!("lost: {}", names(&self.objects)));
         }
         if !self.records.is_empty() {
-            parts.push(format!("damaged and left out: {}", self.records.join(", ")));
+            let contents: Vec<_> = self.records.iter().map(|record| metadata::content_of(record)).collect();
+            parts.push(format!("damaged and left out: {}", contents.join(", ")));
         }
         if !self.frames.is_empty() {
             parts.push(format!("missing or damaged: {}", frame_ranges(&self.frames)));

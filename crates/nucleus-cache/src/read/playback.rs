@@ -10,7 +10,7 @@ use crate::container::index::{FileIndex, rebuild, summary};
 use crate::container::part_file;
 use crate::corruption::CorruptionReport;
 use crate::error::OpenError;
-use crate::messages::metadata::{self, PROFILE};
+use crate::messages::metadata::PROFILE;
 use crate::messages::topology;
 use crate::read::time_index::{self, TimeSample};
 use crate::run::{ObjectInfo, RunInfo};
@@ -136,7 +136,7 @@ impl<R: Read + Seek> Playback<R> {
         };
         self.run = run;
         self.corruption.start = !is_ours || lost.is_empty() && !is_sound;
-        self.corruption.records = lost.into_iter().map(metadata::content_of).collect();
+        self.corruption.records = lost;
         self.library = match head {
             Head::Of { library, .. } if is_ours => library,
             _ => self.file_index.copies.library.clone().unwrap_or_default(),

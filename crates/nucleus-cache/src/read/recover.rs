@@ -8,7 +8,7 @@ use mcap::records::MessageHeader;
 use crate::container::writer::CacheWriter;
 use crate::error::{ReadError, RecordError};
 use crate::messages::attribute::Attribute;
-use crate::messages::{metadata, points, topology};
+use crate::messages::{points, topology};
 use crate::read::load::LatestMessage;
 use crate::read::playback::{FIRST, Playback};
 use crate::run::{ObjectKind, Packing};
@@ -88,9 +88,8 @@ impl<R: Read + Seek> Playback<R> {
             self.file_index.metadata.iter().try_for_each(|record| saved.writer.metadata(record))?;
         } else {
             // The record of the run lists the others: without what is lost, but for the scene, which every run has.
-            let is_lost = |name: &str| self.corruption.records.contains(&metadata::content_of(name));
             let records = self.run.to_metadata().into_iter().chain(self.run.extras_to_metadata());
-            let mut kept = records.filter(|record| !is_lost(&record.name));
+            let mut kept = records.filter(|record| !self.corruption.records.contains(&record.name.as_str()));
             kept.try_for_each(|record| saved.writer.metadata(&record))?;
         }
         let uses = |one: &Attribute| {
