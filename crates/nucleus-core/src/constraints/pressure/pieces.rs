@@ -5,6 +5,8 @@
 //! at the start, a piece gets all of the pressure while it is closed, and none from half a sphere on: a scrap in open air has
 //! the same pressure on both sides.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 
 use crate::math::{Real, Row4};
@@ -83,11 +85,10 @@ impl Pieces {
             sets.union(a, b);
             sets.union(a, c);
         }
-        for (row, &welded) in clusters.iter().enumerate().skip(first as usize).take(chamber.len()) {
-            // A weld to another cloth joins no pieces of this one.
-            if welded >= first && ((welded - first) as usize) < chamber.len() {
-                sets.union(at(row as u32), at(welded));
-            }
+        // The lowest row of a cluster may be of another cloth.
+        let mut lowest = BTreeMap::new();
+        for (point, &cluster) in (0..chamber.len() as u32).zip(clusters.iter().skip(first as usize)) {
+            sets.union(*lowest.entry(cluster).or_insert(point), point);
         }
         let mut numbers = vec![u32::MAX; chamber.len()];
         self.chamber.clear();
@@ -164,6 +165,9 @@ mod tests {
         // A weld joins the two halves again.
         let mut welds: Vec<u32> = (0..16).collect();
         welds[13] = 12;
+        assert_eq!(shares(&[[10, 11, 12], [13, 14, 15]], &welds), (vec![1.0; 6], true));
+        // So do two welds to one point of another cloth.
+        (welds[12], welds[13]) = (4, 4);
         assert_eq!(shares(&[[10, 11, 12], [13, 14, 15]], &welds), (vec![1.0; 6], true));
     }
 }
