@@ -18,6 +18,21 @@ fn points(solver: &impl StateView, count: usize) -> Vec<Vec3> {
 }
 
 #[test]
+fn the_99th_percentile_of_strain_is_that_of_the_links_also_above_one() {
+    // Half of the links are three times as long as at rest, and two of 544 are far longer.
+    let sheet = grid(17, 17, Vec3::x(), Vec3::z());
+    let mut held = pins(&sheet, 0..289);
+    for pin in &mut held {
+        pin.start.x *= 3.0;
+        pin.end.x *= 3.0;
+    }
+    (held[0].start.y, held[0].end.y) = (10.0, 10.0);
+    let input = FrameInput { pins: held, ..frame(1, physical(24.0)) };
+    let report = Solver::<f32>::new(one_cloth(sheet, LINKS), 1).step(&input, &mut ());
+    assert!((report.strain_99 - 2.0).abs() < 1e-4 && report.max_strain > 100.0, "{report:?}");
+}
+
+#[test]
 fn an_undamped_swing_creates_no_energy_at_any_setting() {
     let sheet = grid(81, 81, Vec3::x(), Vec3::z());
     for evaluations in [24.0, 48.0, 96.0, 192.0] {
