@@ -146,27 +146,40 @@ impl Compiler<'_> {
 
     /// The start state of a cloth; `None` after an error, which is reported.
     pub(super) fn start_state(&mut self, cloth: NodeId, mesh: NodeId, points: usize) -> Option<Start> {
-        let [positions, velocities] = [&n_base::START_POSITIONS, &n_base::START_VELOCITIES]
-            .map(|key| self.start_vectors(cloth, mesh, points, key));
+        let positions = self.vectors(cloth, &n_base::START_POSITIONS);
+        let positions = self.of_each_point(cloth, mesh, points, &n_base::START_POSITIONS, positions);
+        let velocities = self.start_velocities(cloth, mesh, points, &n_base::START_VELOCITIES);
         Some(Start { positions: positions?, velocities: velocities? })
     }
 
-    /// One vector per point in metres or metres per second, or none; `None` after an error, which is reported. One velocity
-    /// counts for all points.
-    pub(super) fn start_vectors(
+    /// One velocity per point in metres per second, or none; one that is given counts for all points. `None` after an error,
+    /// which is reported.
+    pub(super) fn start_velocities(
         &mut self,
         cloth: NodeId,
         mesh: NodeId,
         points: usize,
         key: &Key<Vec<[f64; 3]>>,
     ) -> Option<Vec<Vector3<f64>>> {
-        let mut vectors = self.vectors(cloth, key);
-        let is_velocity = key.row.unit == n_base::START_VELOCITIES.row.unit;
-        if let Ok(column) = &mut vectors
-            && let (&[velocity], true) = (&column[..], is_velocity)
+        let mut velocities = self.vectors(cloth, key);
+        if let Ok(column) = &mut velocities
+            && let &[velocity] = &column[..]
         {
             column.resize(points, velocity);
         }
+        self.of_each_point(cloth, mesh, points, key, velocities)
+    }
+
+    /// The vectors of an attribute in metres or metres per second, if there is one per point or none; `None` after an error,
+    /// which is reported.
+    fn of_each_point(
+        &mut self,
+        cloth: NodeId,
+        mesh: NodeId,
+        points: usize,
+        key: &Key<Vec<[f64; 3]>>,
+        vectors: Result<Vec<[f64; 3]>, String>,
+    ) -> Option<Vec<Vector3<f64>>> {
         let [name, mesh] = [cloth, mesh].map(|node| self.scene.graph.node(node).name());
         let label = format!("`{}` of `{name}`", key.row.name);
         let metres = |vectors: Vec<[f64; 3]>| -> Vec<Vector3<f64>> {
@@ -175,10 +188,9 @@ impl Compiler<'_> {
         let is_far = |metres: &Vector3<f64>| metres.amax() > MAX_COORDINATE;
         let checked = vectors.map(metres).and_then(|column| match column.iter().position(is_far) {
             _ if !column.is_empty() && column.len() != points => {
-                let or = if is_velocity { ", or one for all" } else { "" };
                 let found = column.len();
                 Err(format!(
-                    "{label} has {found} vectors, but `{mesh}` has {points} points: give one for each{or}"
+                    "{label} has {found} vectors, but `{mesh}` has {points} points: give one for each"
                 ))
             }
             Some(point) => Err(format!("{label} is more than {MAX_COORDINATE:e} m at point {point}")),

@@ -31,7 +31,7 @@ impl Compiler<'_> {
         let velocities = self.first_given(id, &n_particle::VELOCITY0, &n_particle::VELOCITY);
         let velocities = match self.plays_from_start(id) {
             true => Vec::new(),
-            false => self.start_vectors(id, id, points, velocities)?,
+            false => self.start_velocities(id, id, points, velocities)?,
         };
         let graph = &self.scene.graph;
         let lists = ClothLists {
