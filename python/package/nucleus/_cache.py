@@ -28,9 +28,6 @@ class Cache:
             OSError: when it cannot be read.
         """
         self.path = os.fsdecode(path)
-        # A pipe would wait for a writer, and not for Ctrl-C.
-        if os.path.exists(self.path) and not (os.path.isfile(self.path) or os.path.isdir(self.path)):
-            raise OSError(f"cannot open `{self.path}`: it is not a regular file")
         self._cache = _nucleus.Playback(self.path)
         self._facts: dict[str, Any] = json.loads(self._cache.facts())
 
