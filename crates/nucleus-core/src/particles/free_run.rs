@@ -215,7 +215,8 @@ impl<R: Real> Run<'_, R> {
         }
     }
 
-    /// Applies the fallbacks to a point until it has its certificates. Returns the number of contacts without.
+    /// Applies the fallbacks to a point until it has its certificates and is above the ground. Returns the number of contacts
+    /// of which that fails.
     fn apply_fallbacks(&self, point: u32, near: &mut NearPoints<R>) -> u64 {
         let mut unproven = 0;
         for Attempt { fallback, number, thickness_scale } in attempts_for_free_points() {
@@ -225,10 +226,14 @@ impl<R: Real> Run<'_, R> {
             }
             // In the last attempts the ground does not push any more, and only the surface moves the point.
             let ground_pushes = fallback == Fallback::Push || number < TRUNCATIONS / 2;
-            if ground_pushes && let Some(ground) = self.ground(thickness_scale) {
-                ground.resolve(point..point + 1);
-            }
-            unproven = self.certify(point, near);
+            let has_passed_ground = match self.ground(thickness_scale) {
+                Some(ground) if ground_pushes => {
+                    ground.resolve(point..point + 1);
+                    false
+                }
+                ground => ground.is_some_and(|ground| ground.has_passed(point)),
+            };
+            unproven = self.certify(point, near) + u64::from(has_passed_ground);
             if unproven == 0 {
                 break;
             }
