@@ -151,6 +151,21 @@ fn the_members_of_a_constraint_are_listed_and_drawn_when_chosen() {
 }
 
 #[test]
+fn picked_points_are_drawn_and_named_as_components_of_a_scene() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let player = serve(written(folder.path(), Sample::default()), 0).unwrap();
+    let green = |shown: &Shown| shown.share(|[r, g, b]| *g > 230 && *r < 190 && *b > 190 && *b < 245);
+    let options = "frame=1&pick=flag.vtx[3:6]&pick=flag.vtx[40]&pick=flag.vtx[7]";
+    let named = |shown: &Shown| shown.page.contains(r#""flag.vtx[3:7]", "flag.vtx[40]""#);
+    let none = look_until(&player, chromium, "frame=1", |shown| shown.cloth() > 0.03);
+    let picked = look_until(&player, chromium, options, |shown| named(shown) && green(shown) > 1e-4);
+    assert!(named(&picked), "{}", picked.page);
+    assert!(picked.page.contains("<dt>Picked points</dt><dd>6</dd>"), "{}", picked.page);
+    assert!(green(&none) < 1e-5 && green(&picked) > 1e-4, "{} {}", green(&none), green(&picked));
+}
+
+#[test]
 fn colouring_by_strain_replaces_the_colour_of_the_cloth() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();

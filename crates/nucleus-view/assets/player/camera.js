@@ -82,9 +82,11 @@ export function tangentOf({ focalLength, film }, fit, aspect) {
 const TANGENT = Math.tan((30 * Math.PI) / 360);
 const FILLED = 0.78; // fraction of the picture that a framed box may fill; panels cover the rest
 const MAX_PITCH = 1.55; // radians
+const CLICK = 4; // pixels that a pointer may move in a click
 
 export class Camera {
-  constructor(canvas, onChange) {
+  // `onClick` is called with the place of a click on the canvas in pixels, and whether shift was held.
+  constructor(canvas, onChange, onClick) {
     this.target = [0, 0, 0];
     this.distance = 5;
     this.yaw = 0.57;
@@ -94,7 +96,7 @@ export class Camera {
     this.track = null; // the camera of the scene that is followed, if any
     this.frames = 0; // since the start of the run
     this.canvas = canvas;
-    this.onChange = onChange;
+    Object.assign(this, { onChange, onClick });
     this.listen();
   }
 
@@ -207,22 +209,33 @@ export class Camera {
   listen() {
     const { canvas } = this;
     const fingers = new Map();
-    const lift = (event) => fingers.delete(event.pointerId);
+    let pressed = null; // the press that may become a click
+    const lift = (event) => {
+      pressed = null;
+      fingers.delete(event.pointerId);
+    };
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, event);
+      pressed = fingers.size === 1 && event.button === 0 ? event : null;
     });
     canvas.addEventListener("pointermove", (event) => {
       const before = fingers.get(event.pointerId);
-      if (before) {
+      const isClick = pressed && Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) <= CLICK;
+      if (before && !isClick) {
+        pressed = null;
         this.leave();
         this.drag(fingers, before, event);
         fingers.set(event.pointerId, event);
         this.onChange();
       }
     });
-    canvas.addEventListener("pointerup", lift);
+    canvas.addEventListener("pointerup", (event) => {
+      const { left, top } = canvas.getBoundingClientRect();
+      pressed && this.onClick([event.clientX - left, event.clientY - top], event.shiftKey);
+      lift(event);
+    });
     canvas.addEventListener("pointercancel", lift);
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();

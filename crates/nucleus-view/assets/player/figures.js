@@ -20,7 +20,7 @@ const FIGURES = {
   depenetrating: ["Points depenetrating", plain, some],
   intersections: ["Edges intersecting", plain, some],
   kinetic_energy: ["Kinetic energy, J", plain],
-  particles: ["Particles", plain],
+  particles: ["Particles of emitters", plain],
   births: ["Particles emitted", plain],
   deaths: ["Particles that died", plain],
   births_refused: ["Particles not emitted", plain, some],

@@ -19,6 +19,7 @@ export function optionsOf({ timeline, scene, camera, series }) {
     options.set(colour, colour in scales ? short(scales[colour]) : "");
   }
   new Set(scene.selections.filter(({ isShown }) => isShown).map(({ owner }) => owner)).forEach((owner) => options.append("select", owner));
+  scene.picks.components.forEach((component) => options.append("pick", component));
   wireframe && options.set("wireframe", "");
   surface && options.set("surface", "");
   scene.twins.length > 0 && options.set("twin", twin);
@@ -58,6 +59,9 @@ export async function applyAddress(player) {
   }
   if (options.has("select")) {
     player.select(options.getAll("select"));
+  }
+  if (options.has("pick")) {
+    player.pickComponents(options.getAll("pick"));
   }
   applyCamera(player, options);
   if (["over", "beside", "off"].includes(options.get("twin"))) {

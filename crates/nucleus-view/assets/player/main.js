@@ -37,6 +37,7 @@ const KEYS = {
   y: copyLink,
   "[": (player) => player.scaleColours(0.5),
   "]": (player) => player.scaleColours(2),
+  Escape: (player) => player.pickAt(null),
   "?": () => byId("help").toggleAttribute("open"),
 };
 const BUTTONS = { play: " ", loop: "r", mark: "i", end: "o", link: "y", wireframe: "w", surface: "u", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
@@ -44,7 +45,8 @@ const BUTTONS = { play: " ", loop: "r", mark: "i", end: "o", link: "y", wirefram
 function listen(player) {
   document.addEventListener("keydown", (event) => {
     const act = KEYS[event.key];
-    const isForFocus = event.key === " " && event.target.matches?.("button, summary, input[type=checkbox]");
+    const pressable = event.key === " " ? "button, summary, input[type=checkbox], select, textarea" : "select, textarea";
+    const isForFocus = event.key !== "Escape" && event.target.matches?.(pressable);
     if (act && player.timeline && !isForFocus && !event.ctrlKey && !event.metaKey && !event.altKey) {
       event.preventDefault();
       act(player, event);
@@ -56,6 +58,7 @@ function listen(player) {
       KEYS[key](player, event);
     });
   }
+  listenToPicks(player);
   listenToTracks(player);
   listenToSeries(player);
   listenToFiles(player);
@@ -63,6 +66,15 @@ function listen(player) {
   const footer = document.querySelector("footer");
   new ResizeObserver(() => document.body.style.setProperty("--footer", `${footer.offsetHeight}px`)).observe(footer);
   window.addEventListener("hashchange", () => player.timeline && applyAddress(player));
+}
+
+function listenToPicks(player) {
+  byId("unpick").addEventListener("click", () => player.pickAt(null));
+  byId("copy").addEventListener("click", async ({ target }) => {
+    target.blur();
+    byId("components").select();
+    await navigator.clipboard?.writeText(byId("components").value).catch(() => {});
+  });
 }
 
 function listenToTracks(player) {

@@ -45,6 +45,25 @@ export function showSelections(scene, onChange) {
   }));
 }
 
+// Shows the picked points: their number and components, the place of the last, and the distance of the last two.
+export function showPicks(picks, scene) {
+  const places = picks.places(scene);
+  const [last, before] = [places.at(-1), places.at(-2)];
+  const rows = [["Picked points", plain(picks.all.length)]];
+  if (last) {
+    rows.push(["Place of the last", last.map(short).join(", ")]);
+  }
+  if (before) {
+    rows.push(["Distance of the last two", short(Math.hypot(...last.map((x, axis) => x - before[axis])))]);
+  }
+  byId("pick-figures").replaceChildren(...rows.flatMap(([label, value]) => [
+    element("dt", { textContent: label }), element("dd", { textContent: value }),
+  ]));
+  const components = picks.components.map((component) => `"${component}"`).join(", ");
+  byId("components").value = byId("components").textContent = components;
+  byId("picked").hidden = picks.all.length === 0;
+}
+
 // Shows the number of points of each object in its current mesh.
 export function countPoints(scene) {
   for (const { count, mesh, topology } of scene.objects) {
@@ -162,6 +181,7 @@ export function showTime(cache, { index, frame, substep, substeps, timeIndex, ti
   byId("now").textContent = `frame ${frame}`;
   byId("of").textContent = `of ${cache.frameNumber(cache.frames.length - 1)}${share} · ${time.toFixed(3)} s`;
   byId("frames").value = index;
+  byId("frames").setAttribute("aria-valuetext", `frame ${frame}`);
   byId("substeps").hidden = times < 2;
   Object.assign(byId("substeps"), { max: times - 1, value: timeIndex });
   Object.assign(document.body.dataset, { frame, substep });

@@ -7,7 +7,7 @@ const [POSITION, SIZE, COLOUR, GLOW] = [0, 1, 2, 3];
 // The column of the quantity that colours.
 export const VALUE = 4;
 // Numbers of a look: see `readLooks`.
-const NUMBERS = 8;
+export const NUMBERS = 8;
 
 export class Particles {
   constructor(gl) {

@@ -5,8 +5,9 @@ import { Camera } from "./camera.js";
 import { distances, fittedScale, percentile } from "./compare.js";
 import {
   byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showLegendNote, showNotice, showObjects, showSelections,
-  showSeriesFigures, showSeriesNow, showSpeed, showState, showTime,
+  showPicks, showSeriesFigures, showSeriesNow, showSpeed, showState, showTime,
 } from "./panel.js";
+import { pointAt } from "./pick.js";
 import { levelPlane } from "./plane.js";
 import { Scene, boxOf, unionOf } from "./scene.js";
 import { Series } from "./series.js";
@@ -24,7 +25,7 @@ export class Player {
     this.redraw = () => (this.isStale = true);
     this.isStale = true; // whether the picture must be drawn again
     this.scene = new Scene(canvas);
-    this.camera = new Camera(canvas, this.redraw);
+    this.camera = new Camera(canvas, this.redraw, (place, isMore) => this.timeline && this.pickAt(place, isMore));
     this.timeline = null; // of the open cache
     this.series = new Series(byId("curve"), (figures) => showSeriesFigures(figures, this.series.key), showSeriesNow);
     this.other = null; // the cache of the other run, if one is compared
@@ -137,9 +138,10 @@ export class Player {
     for (const frame of new Set([last, last >> 1, 0])) {
       const { positions = [] } = await cache.state(frame).catch(() => ({}));
       positions.forEach((points, k) => {
-        const box = boxOf(points);
+        const { kind, radius } = cache.objects[k].topology;
+        const box = boxOf(points, kind === "particles" ? radius : 0);
         all.push(box);
-        cache.objects[k].topology.kind !== "collider" && simulated.push(box);
+        kind !== "collider" && simulated.push(box);
       });
     }
     const box = unionOf(simulated) ?? unionOf(all) ?? DEFAULT_STAGE;
@@ -171,6 +173,7 @@ export class Player {
       showFigures(state.report, scene.invalidPoints, this.other && (twin?.report ?? {}));
       this.compare(state, twin);
       showContactStates(scene, state.contacts);
+      showPicks(scene.picks, scene);
       showLegendNote(scene.look.colour === "speed" && scene.objects.some(({ isShown, speeds }) => isShown && speeds === null));
       showNotice("frame", "");
       this.redraw();
@@ -185,6 +188,23 @@ export class Player {
     this.scene.selections.forEach((selection) => (selection.isShown = owners.includes(selection.owner)));
     showSelections(this.scene, this.redraw);
     byId("selections").open ||= owners.length > 0;
+    this.redraw();
+  }
+
+  // Picks the point under a place on the canvas, in place of all others or, with `isMore`, beside them.
+  pickAt(place, isMore) {
+    this.scene.picks.pick(place && pointAt(this.scene, this.camera, place), isMore);
+    this.showPicks();
+  }
+
+  // Picks the points of components.
+  pickComponents(components) {
+    this.scene.picks.read(components);
+    this.showPicks();
+  }
+
+  showPicks() {
+    showPicks(this.scene.picks, this.scene);
     this.redraw();
   }
 

@@ -4,9 +4,10 @@ import { cross, multiply, normalise, orthographic, view } from "./camera.js";
 import { VertexArray, context, depthTarget, program } from "./gl.js";
 import { MAX_COORDINATE, Mesh } from "./mesh.js";
 import { Particles, VALUE as PARTICLE_VALUE } from "./particles.js";
+import { Picks } from "./pick.js";
 import { axesOf, foot } from "./plane.js";
 import {
-  CONTACT_STATE_COLOURS, DEPTH, DOTS, FLOOR, LINES, PARTICLES, SELECTION_COLOURS, STRAIN, SURFACE, objectColours,
+  CONTACT_STATE_COLOURS, DEPTH, DOTS, FLOOR, LINES, PARTICLES, PICK_COLOUR, SELECTION_COLOURS, STRAIN, SURFACE, objectColours,
 } from "./shading.js";
 
 const BACKGROUND = [0.0075, 0.0085, 0.0105];
@@ -29,6 +30,8 @@ export class Scene {
     this.twins = [];
     this.areTwinsKnown = true; // false at a frame that the other run does not have
     this.selections = [];
+    this.picks = new Picks();
+    this.pickVertices = new VertexArray(this.gl, [3]);
     // Colour by "object", "strain", "speed", "difference" or "contacts"; a scalar has a value of full saturation.
     this.look = { wireframe: false, surface: false, colour: "object", twin: "over", scales: { strain: 0.05, speed: 1, difference: 0.01 } };
   }
@@ -167,7 +170,10 @@ export class Scene {
     shown.filter((object) => !isTransparent(object)).forEach((object) => this.drawObject(object, eye));
     this.drawnTwins.forEach((twin) => this.look.twin === "over" ? this.drawEdges(twin, eye) : this.drawObject(twin, eye));
     shown.filter(isTransparent).forEach((object) => this.drawObject(object, eye));
-    this.selections.filter(({ isShown }) => isShown).forEach((selection) => this.drawSelection(selection, eye));
+    this.selections.filter(({ isShown }) => isShown).forEach((selection) => this.drawDots(selection, eye, 7));
+    this.picks.objects.forEach((picked) => (
+      this.drawDots({ ...picked, colour: PICK_COLOUR, vertices: this.pickVertices }, eye, 9)
+    ));
     gl.bindVertexArray(null);
     gl.finish(); // so that frames do not queue up on slow graphics
   }
@@ -281,8 +287,8 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  // Draws the points of a selection where its object is now.
-  drawSelection({ object, points, colour, vertices }, eye) {
+  // Draws points of an object where it is now, as dots of this many pixels.
+  drawDots({ object, points, colour, vertices }, eye, size) {
     const { gl } = this;
     const own = this.objects.find(({ name }) => name === object);
     if (!own?.isShown || !own.mesh.points) {
@@ -290,7 +296,7 @@ export class Scene {
     }
     const known = points.filter((point) => 3 * point + 2 < own.mesh.points.length);
     vertices.set(POSITION, Float32Array.from(known.flatMap((point) => [...own.mesh.points.slice(3 * point, 3 * point + 3)])));
-    this.use(this.programs.dots, { ...eye, colour, size: 7 * Math.min(window.devicePixelRatio || 1, 2) });
+    this.use(this.programs.dots, { ...eye, colour, size: size * Math.min(window.devicePixelRatio || 1, 2) });
     gl.bindVertexArray(vertices.array);
     gl.drawArrays(gl.POINTS, 0, known.length);
   }
@@ -343,14 +349,14 @@ function setMesh(object, topology) {
   }
 }
 
-// The bounding box of points, without points that are not finite.
-export function boxOf(points) {
+// The bounding box of points, or of balls of a radius, without points that are not finite.
+export function boxOf(points, radius = 0) {
   const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   for (let k = 0; k < points.length; k += 3) {
     const isDrawn = [0, 1, 2].every((axis) => Math.abs(points[k + axis]) <= MAX_COORDINATE); // false for NaN
     for (let axis = 0; isDrawn && axis < 3; axis += 1) {
-      low[axis] = Math.min(low[axis], points[k + axis]);
-      high[axis] = Math.max(high[axis], points[k + axis]);
+      low[axis] = Math.min(low[axis], points[k + axis] - radius);
+      high[axis] = Math.max(high[axis], points[k + axis] + radius);
     }
   }
   return { low, high };

@@ -18,6 +18,9 @@ export const CONTACT_STATE_COLOURS = [
   [0.45, 0.45, 0.43], [0.07, 0.3, 0.62], [0.9, 0.42, 0.03], [0.5, 0.03, 0.5], [0.7, 0.01, 0.02],
 ];
 
+// The colour of picked points.
+export const PICK_COLOUR = [0.35, 1, 0.75];
+
 // The colour of each object, by its order among cloths or among colliders.
 export function objectColours(objects) {
   const counts = { cloth: 0, collider: 0 };

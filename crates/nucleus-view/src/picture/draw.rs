@@ -58,7 +58,7 @@ fn floor_plane(objects: &[Object], ground: Ground) -> Option<FloorPlane> {
             .then(|| FloorPlane { origin: origin.into(), normal: unit(&normal.into()) })?,
         Ground::Below => {
             let mut all = Bounds::default();
-            objects.iter().for_each(|object| all.include(object.positions));
+            objects.iter().for_each(|object| all.include_object(object));
             FloorPlane::level(all.floor_below(&Bounds::to_frame(objects), &Bounds::of_interest(objects)))
         }
     };
@@ -310,5 +310,30 @@ impl Shader<'_> {
         let sphere = &self.mesh.spheres[fragment.primitive as usize - first_sphere];
         let sky = 0.5 + 0.5 * normal.y;
         SurfacePoint { position: *position, normal, colour: sphere.colour, sky, glow: sphere.glow }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nucleus_core::Faces;
+
+    use super::*;
+    use crate::picture::scene::Kind;
+
+    #[test]
+    fn balls_lie_on_the_floor_below_them() {
+        let (faces, positions) = (Faces::default(), [[0.0, 5.0, 0.0], [1.0, 6.0, 0.0]]);
+        let balls = Object {
+            name: "balls",
+            kind: Kind::Particles,
+            faces: &faces,
+            positions: &positions,
+            rest: None,
+            radius: Some(0.25),
+            looks: None,
+        };
+        let height = |ball| floor_plane(&[ball], Ground::Below).map(|plane| plane.origin.y);
+        assert_eq!(height(balls), Some(4.75));
+        assert_eq!(height(Object { radius: None, ..balls }), Some(5.0));
     }
 }

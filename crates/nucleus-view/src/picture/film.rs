@@ -218,7 +218,7 @@ fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<
         let objects = objects(cache, *moment, &states)?;
         framed.merge(&Bounds::to_frame(&objects));
         stage.merge(&Bounds::of_interest(&objects));
-        objects.iter().for_each(|object| all.include(object.positions));
+        objects.iter().for_each(|object| all.include_object(object));
     }
     Ok(Survey { framed, stage, floor: Ground::At(all.floor_below(&framed, &stage)) })
 }

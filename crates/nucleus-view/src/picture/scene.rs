@@ -198,6 +198,14 @@ impl Bounds {
         }
     }
 
+    /// Extends the box to an object; particles are balls.
+    pub(super) fn include_object(&mut self, object: &Object) {
+        let mut own = Self::default();
+        own.include(object.positions);
+        let radius = object.radius.filter(|_| object.kind == Kind::Particles).unwrap_or(0.0);
+        self.merge(&own.grown(radius));
+    }
+
     /// Extends the box to another box.
     pub fn merge(&mut self, other: &Self) {
         if !other.is_empty() {

@@ -193,6 +193,7 @@ const ASSETS: &[Asset] = assets![
     "/player/messages.js" as SCRIPT,
     "/player/panel.js" as SCRIPT,
     "/player/particles.js" as SCRIPT,
+    "/player/pick.js" as SCRIPT,
     "/player/plane.js" as SCRIPT,
     "/player/player.js" as SCRIPT,
     "/player/records.js" as SCRIPT,
