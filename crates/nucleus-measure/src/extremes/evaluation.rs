@@ -26,7 +26,7 @@ const MAX_ENERGY: f64 = 1.01;
 pub enum TimeBudget {
     /// To its end, except that a run above the cost limit is aborted after 20 s of processor time.
     Long,
-    /// At most 2 s of processor time.
+    /// At most 1 s of processor time.
     Short,
     /// To its end. Cost is not measured, because other runs share the machine.
     Untimed,
@@ -36,7 +36,7 @@ impl TimeBudget {
     fn seconds(self) -> f64 {
         match self {
             Self::Long => 20.0,
-            Self::Short => 2.0,
+            Self::Short => 1.0,
             Self::Untimed => f64::INFINITY,
         }
     }
