@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ball = Surface::sphere(Vector3::zeros(), 0.3, 12);
 
     let mut builder = ModelBuilder::new();
-    let cloth: ClothId = builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), ClothLists::ALL))?;
+    let cloth: ClothId = builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), ClothLists::DEFAULT))?;
     builder.collider(Collider { surface: ball })?;
 
     let mut solver: Solver = Solver::new(builder, 1);

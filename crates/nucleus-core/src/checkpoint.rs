@@ -238,7 +238,7 @@ fn load_pairs<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<
 /// Rest lengths and angles of cloth in which they can change.
 fn save_rest<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     for cloth in &solver.model.cloths {
-        for list in [&cloth.stretch, &cloth.shear].into_iter().filter(|_| cloth.plastic) {
+        for list in [&cloth.stretch, &cloth.shear].into_iter().filter(|_| cloth.lists.plastic) {
             list.groups().iter().map(|group| group.rest_length).collect::<Vec<_>>().encode(out);
         }
         for list in [&cloth.bend_angles, &cloth.bend_six_angles] {
@@ -250,7 +250,7 @@ fn save_rest<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
 
 fn load_rest<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
     for cloth in &mut solver.model.cloths {
-        let plastic = cloth.plastic;
+        let plastic = cloth.lists.plastic;
         for list in [&mut cloth.stretch, &mut cloth.shear].into_iter().filter(|_| plastic) {
             let lengths: Vec<[R; 4]> = Encode::decode(from)?;
             let groups = list.groups_mut();
@@ -292,12 +292,15 @@ fn fingerprint<R: Real>(solver: &Solver<R>) -> u64 {
         let order = cloth.order.places().iter().map(|&place| u64::from(place));
         let rows = [cloth.stretch.len(), cloth.shear.len(), cloth.bend.len(), cloth.bend_six.len()];
         let lists = rows.map(|length| length as u64);
-        let flags =
-            [u64::from(cloth.damps), u64::from(cloth.alternates_direction), cloth.triangles.len() as u64];
+        let flags = [
+            u64::from(cloth.lists.damp),
+            u64::from(cloth.alternates_direction),
+            cloth.triangles.len() as u64,
+        ];
         let boundary = corners(&cloth.boundary.triangles);
         // A checkpoint stores these as far as a cloth has them.
         let stored = [
-            usize::from(cloth.plastic),
+            usize::from(cloth.lists.plastic),
             cloth.bend_angles.len(),
             cloth.bend_six_angles.len(),
             cloth.pressure.chambers(),

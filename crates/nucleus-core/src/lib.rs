@@ -11,7 +11,7 @@
 //! let sides = [Vector3::x(), Vector3::z()];
 //! let sheet = Surface::sheet(Vector3::new(-0.5, 0.4, -0.5), sides, [10, 10]);
 //! let mut builder = ModelBuilder::new();
-//! let cloth = builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), ClothLists::ALL))?;
+//! let cloth = builder.cloth(Cloth::new(sheet, Mass::PerArea(0.2), ClothLists::DEFAULT))?;
 //! builder.collider(Collider { surface: Surface::sphere(Vector3::zeros(), 0.3, 8) })?;
 //!
 //! let mut solver: Solver = Solver::new(builder, 1);
@@ -113,7 +113,8 @@ pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};
 pub use model::build_error::BuildError;
 pub use model::builder::ModelBuilder;
-pub use model::objects::{Cloth, ClothLists, Collider, LinkOrder, Mass, Particles, Start};
+pub use model::lists::ClothLists;
+pub use model::objects::{Cloth, Collider, LinkOrder, Mass, Particles, Start};
 pub use model::surface::{Faces, Surface};
 pub use model::vertex_maps::VertexMaps;
 pub use output::{

@@ -199,9 +199,17 @@ impl<R: Real> Solver<R> {
     /// Checks the input of a frame.
     ///
     /// # Errors
-    /// The first value that [`step`](Self::step) would replace.
+    /// The first value that [`step`](Self::step) would replace, or the first attribute that has no effect because the cloth
+    /// was built without its list.
     pub fn check_frame(&self, frame: &FrameInput) -> Result<(), InvalidInput> {
-        sanitize(frame, self).1.first.map_or(Ok(()), Err)
+        let without_list = || {
+            let mut cloths = (0..).map(ClothId).zip(self.model.cloths.iter().zip(&frame.cloths));
+            cloths.find_map(|(id, (model, cloth))| {
+                let [attribute, list] = model.lists.missing_for(cloth)?;
+                Some(InvalidInput::NoList { cloth: id, attribute, list })
+            })
+        };
+        sanitize(frame, self).1.first.or_else(without_list).map_or(Ok(()), Err)
     }
 
     /// The mass of a point in kilograms, when it is not pinned.

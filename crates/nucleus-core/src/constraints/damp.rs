@@ -28,7 +28,7 @@ pub fn damp<R: Real>(
 ) {
     for (index, (cloth, settings)) in cloths.iter().zip(&frame.cloths).enumerate() {
         let damping = Damping { stretch_damp: settings.stretch_damp, damp: settings.damp, substep };
-        if !cloth.damps || !damping.is_felt() {
+        if !cloth.lists.damp || !damping.is_felt() {
             continue;
         }
         let has_torque =

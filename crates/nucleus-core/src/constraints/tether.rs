@@ -7,7 +7,7 @@
 //! apart than both reach, both grow in proportion, and the sweeps share out the stretch.
 //!
 //! A wave that runs through cloth stretches it between points of which each is near enough to the pins. Long links
-//! ([`ClothLists::long_links`](crate::model::objects::ClothLists::long_links)) hold these: a point has a link to the one
+//! ([`ClothLists::long_links`](crate::model::lists::ClothLists::long_links)) hold these: a point has a link to the one
 //! [`LONG`] edges nearer to its pin, and one to that at the fourth such distance, which act when they are tight. Every point
 //! has such links, so that the corrections of neighbours are alike; links to a few points alone wrinkle the cloth.
 //!

@@ -81,7 +81,7 @@ pub fn remember_deformation<R: Real>(
     pool: &ThreadPool,
 ) {
     for (cloth, settings) in cloths.iter_mut().zip(&frame.cloths) {
-        if cloth.plastic && settings.yield_strain.is_finite() {
+        if cloth.lists.plastic && settings.yield_strain.is_finite() {
             let [scale, limit] = [settings.rest_length_scale, settings.yield_strain].map(R::from_f64);
             plastic::creep(cloth, &state.displacement, scale, limit, pool);
         }

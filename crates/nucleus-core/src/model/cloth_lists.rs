@@ -37,6 +37,7 @@ pub fn compile_cloth<R: Real>(
     let blocks = Blocks::new(first, rows);
     let (Mass::PerPoint(point_mass) | Mass::PerArea(point_mass)) = cloth.mass;
     let mut model = ClothModel {
+        lists: cloth.lists,
         order,
         blocks,
         stretch: RowList::default(),
@@ -49,7 +50,6 @@ pub fn compile_cloth<R: Real>(
         bend_six_angles: RowList::default(),
         pressure: PressureModel::default(),
         shape: ShapeModel::default(),
-        plastic: cloth.lists.plastic,
         has_faces: !surface.faces.is_empty(),
         attract: cloth.vertex_maps.input_attract.clone(),
         triangles: Vec::new(),
@@ -62,7 +62,6 @@ pub fn compile_cloth<R: Real>(
         is_mass_per_area: matches!(cloth.mass, Mass::PerArea(_)),
         mass_map: Vec::new(),
         edge_length: 0.0,
-        damps: cloth.lists.damp,
         rest_shape: rest_shape(cloth),
         strength_maps: StrengthMaps::default(),
         air: Vec::new(),

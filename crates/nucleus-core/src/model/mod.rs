@@ -13,6 +13,7 @@
 //! | edges, cross links, seams, areas | `topology.rs` |
 //! | how a mesh becomes the lists of a cloth | `cloth_lists.rs` |
 //! | the order of points; the order of links | `order.rs`, `link_order.rs` |
+//! | which list an attribute needs | `lists.rs` |
 //! | blocks of points; colours and lane groups of rows | `blocks.rs`, `rows.rs` |
 //! | distances along a mesh | [`geodesic`] |
 //! | links of woven cloth | [`weave`] |
@@ -24,6 +25,7 @@ pub mod builder;
 pub mod cloth_lists;
 pub mod geodesic;
 pub mod link_order;
+pub mod lists;
 pub mod objects;
 pub mod order;
 mod refusals;
@@ -46,6 +48,7 @@ use crate::constraints::stretch::LinkGroup;
 use crate::contact::boundary::{BoundaryElements, Pseudonormals, sort_spatially};
 use crate::math::Real;
 use crate::model::blocks::Blocks;
+use crate::model::lists::ClothLists;
 use crate::model::objects::Collider;
 use crate::model::order::Order;
 use crate::model::rows::RowList;
@@ -54,6 +57,8 @@ use crate::model::strength_maps::{AirFactors, StrengthMaps};
 /// One cloth: its range in the columns of the state, and its lists. Points are numbered by their row in the columns.
 #[derive(Debug, Clone)]
 pub struct ClothModel<R> {
+    /// The lists that it was built with.
+    pub lists: ClothLists,
     /// Between points of the mesh and places, counted from the cloth's first row.
     pub order: Order,
     /// Its rows in the columns, in blocks.
@@ -78,8 +83,6 @@ pub struct ClothModel<R> {
     pub pressure: PressureModel,
     /// The shapes that it is pulled back to.
     pub shape: ShapeModel,
-    /// Whether links and bends can stay as they are deformed.
-    pub plastic: bool,
     /// Whether it has faces. Particles have none.
     pub has_faces: bool,
     /// Factors on the attraction to the input mesh, by the user's points; empty where it is the same everywhere.
@@ -101,8 +104,6 @@ pub struct ClothModel<R> {
     mass_map: Vec<f64>,
     /// Mean rest length of an edge in metres; zero without edges, and where no contact is possible.
     pub edge_length: f64,
-    /// Whether damping is ever non-zero.
-    pub damps: bool,
     /// A hash of its positions at rest; zero for particles, which have no such shape.
     pub rest_shape: u64,
     /// Vertex maps per row; empty where there are none.

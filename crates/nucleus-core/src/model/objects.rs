@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use crate::input::PointId;
 use crate::input::particles::{CollisionEvent, ParticleRamp};
+use crate::model::lists::ClothLists;
 use crate::model::surface::Surface;
 use crate::model::topology::point_areas;
 use crate::model::vertex_maps::VertexMaps;
@@ -17,84 +18,6 @@ pub enum Mass {
     PerPoint(f64),
     /// Kilograms per square metre, distributed by the area of each point; independent of the mesh.
     PerArea(f64),
-}
-
-/// The lists that a cloth can ever need. A list that is off is never built and never swept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ClothLists {
-    /// Links along edges: stretch or compression resistance is ever non-zero.
-    pub stretch: bool,
-    /// Cross links of quads among them, so that stretch resistance also resists shear (`addCrossLinks`).
-    pub cross_links: bool,
-    /// A second list of the cross links of quads: shear resistance is ever non-zero.
-    pub shear: bool,
-    /// Hinges between faces: bend resistance is ever non-zero.
-    pub bend: bool,
-    /// Drag, lift or wind is ever non-zero.
-    pub air: bool,
-    /// Damping of relative velocities is ever non-zero.
-    pub damp: bool,
-    /// Self-collision is ever on.
-    pub self_collision: bool,
-    /// Hinges that are bent at rest have signed angles (`bendSolver` above Simple).
-    pub signed_bend: bool,
-    /// All hinges have signed angles: for an angle scale, a dropoff, flip tracking or permanent bends.
-    pub bend_angles: bool,
-    /// Pressure is ever non-zero.
-    pub pressure: bool,
-    /// Rigidity or deform resistance is ever non-zero.
-    pub shape: bool,
-    /// Unconnected parts of the mesh keep their shapes each on its own (`usePolygonShells`).
-    pub shells: bool,
-    /// Links or bends can stay as they are deformed.
-    pub plastic: bool,
-    /// Points are tethered to pins at some time.
-    pub tethers: bool,
-    /// Tethered cloth has long links between its points too.
-    pub long_links: bool,
-    /// Links buckle at some time.
-    pub buckling: bool,
-}
-
-impl ClothLists {
-    /// Everything that cloth has by default.
-    pub const ALL: Self = Self {
-        stretch: true,
-        cross_links: true,
-        shear: true,
-        bend: true,
-        air: true,
-        damp: true,
-        self_collision: true,
-        signed_bend: false,
-        bend_angles: false,
-        pressure: false,
-        shape: false,
-        shells: false,
-        plastic: false,
-        tethers: false,
-        long_links: false,
-        buckling: false,
-    };
-    /// Everything off: free points.
-    pub const NONE: Self = Self {
-        stretch: false,
-        cross_links: false,
-        shear: false,
-        bend: false,
-        air: false,
-        damp: false,
-        self_collision: false,
-        signed_bend: false,
-        bend_angles: false,
-        pressure: false,
-        shape: false,
-        shells: false,
-        plastic: false,
-        tethers: false,
-        long_links: false,
-        buckling: false,
-    };
 }
 
 /// The order in which the links of a cloth are corrected in a sweep.

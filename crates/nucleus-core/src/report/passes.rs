@@ -71,7 +71,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     passes.extend(schedule.links.iter().map(pass));
     let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
         let (stretch_damp, damp) = (settings.stretch_damp, settings.damp);
-        cloth.damps && Damping { stretch_damp, damp, substep: schedule.h }.is_felt()
+        cloth.lists.damp && Damping { stretch_damp, damp, substep: schedule.h }.is_felt()
     };
     let damped = solver.model.cloths.iter().zip(&frame.cloths).filter(damped);
     let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
@@ -137,7 +137,7 @@ fn whole_passes<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Sche
     };
     let yields = |cloth: &ClothModel<R>, settings: &ClothFrame| {
         let Bending { yield_sine, solver, .. } = settings.bending;
-        let links = if cloth.plastic && settings.yield_strain.is_finite() {
+        let links = if cloth.lists.plastic && settings.yield_strain.is_finite() {
             cloth.stretch.len() + cloth.shear.len()
         } else {
             0

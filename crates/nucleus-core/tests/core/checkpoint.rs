@@ -13,7 +13,7 @@ use proptest::prelude::*;
 fn scene() -> (ModelBuilder, FrameInput) {
     let mut sheet = grid(9, 9, Vec3::x(), Vec3::z());
     sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.5, 0.21, -0.5));
-    let mut builder = crate::scenes::one_cloth(sheet, ClothLists::ALL);
+    let mut builder = crate::scenes::one_cloth(sheet, ClothLists::DEFAULT);
     builder.collider(Collider { surface: sphere(0.2, Vec3::zeros()) }).expect("a good mesh");
     let own = SelfCollision { on: true, thickness: 0.02, ..SelfCollision::OFF };
     let cloth = nucleus_core::ClothFrame { thickness: 0.02, self_collision: own, ..still() };
@@ -80,15 +80,15 @@ fn sheet(size: f64, lists: ClothLists) -> ModelBuilder {
 
 #[test]
 fn a_checkpoint_of_another_shape_or_of_other_lists_is_of_another_model() {
-    let saved = Solver::<f32>::new(sheet(1.0, ClothLists::ALL), 1).save();
+    let saved = Solver::<f32>::new(sheet(1.0, ClothLists::DEFAULT), 1).save();
     let restored = |builder| Solver::<f32>::restored(builder, 1, &saved).map(|_| ());
-    assert_eq!(restored(sheet(1.0, ClothLists::ALL)), Ok(()));
-    assert_eq!(restored(sheet(3.0, ClothLists::ALL)), Err(RestoreError::OtherModel));
+    assert_eq!(restored(sheet(1.0, ClothLists::DEFAULT)), Ok(()));
+    assert_eq!(restored(sheet(3.0, ClothLists::DEFAULT)), Err(RestoreError::OtherModel));
     for lists in [
-        ClothLists { plastic: true, ..ClothLists::ALL },
-        ClothLists { bend_angles: true, ..ClothLists::ALL },
-        ClothLists { pressure: true, ..ClothLists::ALL },
-        ClothLists { shape: true, ..ClothLists::ALL },
+        ClothLists { plastic: true, ..ClothLists::DEFAULT },
+        ClothLists { bend_angles: true, ..ClothLists::DEFAULT },
+        ClothLists { pressure: true, ..ClothLists::DEFAULT },
+        ClothLists { shape: true, ..ClothLists::DEFAULT },
     ] {
         assert_eq!(restored(sheet(1.0, lists)), Err(RestoreError::OtherModel), "{lists:?}");
     }
@@ -104,7 +104,7 @@ fn links_that_stop_sliding_continue_with_the_same_bits() {
     };
     let place = LinkSide::Space(Vec3::new(1.4, 0.4, 0.6));
     let link = Link { on_surface: true, ..Link::new([place, face], 0.05) };
-    let mut solver = Solver::<f32>::new(sheet(1.0, ClothLists::ALL), 1);
+    let mut solver = Solver::<f32>::new(sheet(1.0, ClothLists::DEFAULT), 1);
     let input = |solver: &Solver<f32>, formed: Option<Vec<Link>>, slides: bool| {
         let constraint = ConstraintFrame { formed, slides, friction: 0.5, ..ConstraintFrame::default() };
         FrameInput { constraints: vec![constraint], ..solver.default_frame() }
@@ -115,7 +115,7 @@ fn links_that_stop_sliding_continue_with_the_same_bits() {
     }
     let saved = solver.save();
     let mut restored =
-        Solver::<f32>::restored(sheet(1.0, ClothLists::ALL), 1, &saved).expect("the same model");
+        Solver::<f32>::restored(sheet(1.0, ClothLists::DEFAULT), 1, &saved).expect("the same model");
     for slides in [false, true] {
         let input = input(&solver, None, slides);
         solver.step(&input, &mut ());

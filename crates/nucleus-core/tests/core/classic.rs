@@ -34,7 +34,7 @@ fn poly_sphere(radius: f64, centre: Vec3, [round, down]: [u32; 2]) -> Surface {
 /// All defaults of an nCloth, and a point mass of 1.
 fn cloth(surface: Surface) -> ModelBuilder {
     let mut builder = ModelBuilder::new();
-    let lists = ClothLists { shear: false, self_collision: false, signed_bend: true, ..ClothLists::ALL };
+    let lists = ClothLists { shear: false, self_collision: false, signed_bend: true, ..ClothLists::DEFAULT };
     let cloth = builder.cloth(Cloth::new(surface, Mass::PerPoint(1.0), lists)).expect("a good mesh");
     builder.set_link_order(cloth, LinkOrder::Mesh).expect("points of the mesh");
     builder

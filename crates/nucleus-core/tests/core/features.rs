@@ -86,7 +86,7 @@ fn each_feature_adds_its_own_rows_and_no_others() {
 
 #[test]
 fn a_list_whose_attribute_is_zero_in_a_frame_is_not_swept_in_it() {
-    assert_eq!(passes(ClothLists::ALL, &bare()), [("predict", POINTS)]);
+    assert_eq!(passes(ClothLists::DEFAULT, &bare()), [("predict", POINTS)]);
 }
 
 #[test]

@@ -4,9 +4,9 @@ use crate::scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
 use std::sync::Arc;
 
 use nucleus_core::{
-    ClothFrame, ClothId, ColliderFrame, ColliderId, ExcludedSide, Exclusion, Field, FieldKind, FrameInput,
-    InputMesh, InvalidInput, MAX_COORDINATE, MAX_EXCLUSIONS, ParticleChange, Pin, PointId, Reach,
-    ResistanceModel, Solver, StateView,
+    ClothFrame, ClothId, ClothLists, ColliderFrame, ColliderId, ExcludedSide, Exclusion, Field, FieldKind,
+    FrameInput, InputMesh, InvalidInput, MAX_COORDINATE, MAX_EXCLUSIONS, ParticleChange, Pin, PointId,
+    Pressure, Reach, ResistanceModel, Solver, StateView,
 };
 
 /// The points of the ball at this height in metres.
@@ -170,6 +170,37 @@ fn check_frame_refuses_what_a_step_would_replace() {
     );
     let still = FrameInput { duration: 0.0, ..usual };
     assert_eq!(solver.check_frame(&still), Err(InvalidInput::Duration));
+}
+
+#[test]
+fn check_frame_refuses_an_attribute_whose_list_was_not_built() {
+    type Set = fn(&mut ClothFrame);
+    let attributes: [(Set, &str); 6] = [
+        (|cloth| cloth.pressure = Pressure::Manual { pascals: 1.0, damping: 0.0 }, "`pressure` of cloth 0"),
+        (|cloth| cloth.deform_resistance = 1.0, "`ClothLists::shape`"),
+        (|cloth| cloth.yield_strain = 0.1, "`ClothLists::plastic`"),
+        (|cloth| cloth.bending.angle_scale = 0.0, "`ClothLists::bend_angles`"),
+        (|cloth| cloth.tethers = Some(1.0), "`ClothLists::tethers`"),
+        (|cloth| cloth.stiffness.bend = Some(1e-3), "`ClothLists::bend`"),
+    ];
+    let with = |lists| Solver::<f32>::new(one_cloth(grid(3, 3, Vec3::x(), Vec3::y()), lists), 1);
+    let every = ClothLists {
+        bend_angles: true,
+        pressure: true,
+        shape: true,
+        plastic: true,
+        tethers: true,
+        ..ClothLists::DEFAULT
+    };
+    let (without, every) = (with(ClothLists::NONE), with(every));
+    assert_eq!(without.check_frame(&without.default_frame()), Ok(()), "defaults need no list");
+    for (set, words) in attributes {
+        let mut frame = without.default_frame();
+        set(&mut frame.cloths[0]);
+        let refused = without.check_frame(&frame).unwrap_err().to_string();
+        assert!(refused.contains(words), "{refused}");
+        assert_eq!(every.check_frame(&frame), Ok(()));
+    }
 }
 
 #[test]

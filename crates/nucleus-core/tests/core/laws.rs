@@ -61,7 +61,7 @@ fn few_evaluations_are_stable() {
         let cloths =
             vec![ClothFrame { bend_resistance: 10.0, shear_resistance: 200.0, drag: 1.0, ..still() }];
         let input = FrameInput { pins: pins(&sheet, [0, 40]), cloths, ..frame(1, resistance) };
-        let mut solver = Solver::<f32>::new(one_cloth(sheet.clone(), ClothLists::ALL), 1);
+        let mut solver = Solver::<f32>::new(one_cloth(sheet.clone(), ClothLists::DEFAULT), 1);
         for _ in 0..240 {
             let report = solver.step(&input, &mut ());
             assert!(report.finite && report.kinetic_energy < 4.0, "{resistance:?}: {report:?}");
@@ -73,7 +73,7 @@ fn few_evaluations_are_stable() {
 fn a_falling_sheet_moves_as_a_rigid_body() {
     let sheet = grid(33, 33, Vec3::x(), Vec3::z());
     for resistance in [ResistanceModel::Classic, physical(48.0)] {
-        let mut solver = Solver::<f32>::new(one_cloth(sheet.clone(), ClothLists::ALL), 1);
+        let mut solver = Solver::<f32>::new(one_cloth(sheet.clone(), ClothLists::DEFAULT), 1);
         let input = FrameInput {
             cloths: vec![ClothFrame { bend_resistance: 1.0, shear_resistance: 20.0, ..still() }],
             ..frame(3, resistance)
@@ -315,7 +315,7 @@ proptest! {
         let mut builder = ModelBuilder::new();
         let surface = grid(9, 9, Vec3::x(), Vec3::z());
         let held = pins(&surface, [0]);
-        builder.cloth(Cloth::new(surface, Mass::PerPoint(mass), ClothLists::ALL)).expect("a good mesh");
+        builder.cloth(Cloth::new(surface, Mass::PerPoint(mass), ClothLists::DEFAULT)).expect("a good mesh");
         builder.collider(Collider { surface: crate::scenes::sphere(0.3, Vec3::new(0.5, -0.4, 0.5)) }).expect("a good mesh");
         let resistance = if classic { ResistanceModel::Classic } else { physical(evaluations) };
         let cloth = ClothFrame { stretch_resistance: stretch, bend_resistance: bend, shear_resistance: shear,

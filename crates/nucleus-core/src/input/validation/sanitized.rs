@@ -44,6 +44,17 @@ pub enum InvalidInput {
     /// An attribute of a cloth.
     #[error("an attribute of cloth {} is not a usable number", .0.0)]
     Cloth(ClothId),
+    /// An attribute of a cloth that was built without the list that it needs. Only
+    /// [`Solver::check_frame`](crate::Solver::check_frame) says so; in a step it has no effect.
+    #[error("`{attribute}` of cloth {} has no effect without `ClothLists::{list}`", .cloth.0)]
+    NoList {
+        /// The cloth.
+        cloth: ClothId,
+        /// The field of [`ClothFrame`](crate::ClothFrame).
+        attribute: &'static str,
+        /// The field of [`ClothLists`](crate::ClothLists).
+        list: &'static str,
+    },
     /// An attribute of a collider.
     #[error("an attribute of collider {} is not a usable number", .0.0)]
     Collider(ColliderId),

@@ -142,7 +142,7 @@ pub fn drape_placed(points: u32, place: impl Fn(Vec3) -> Vec3) -> ModelBuilder {
     sheet.positions.iter_mut().for_each(|p| *p = place(*p + Vec3::new(-0.5, 0.35, -0.5)));
     let mut ball = sphere(0.31, Vec3::zeros());
     ball.positions.iter_mut().for_each(|p| *p = place(*p));
-    let mut builder = one_cloth(sheet, ClothLists { cross_links: false, ..ClothLists::ALL });
+    let mut builder = one_cloth(sheet, ClothLists { cross_links: false, ..ClothLists::DEFAULT });
     builder.collider(Collider { surface: ball }).expect("a good mesh");
     builder
 }
