@@ -198,6 +198,7 @@ fn input(kind: Kind, spacing: f64) -> FrameInput {
     let plane = GroundPlane {
         origin: -Vec3::y() * 0.5,
         normal: Vec3::y(),
+        start: None,
         bounce: 0.0,
         friction: 0.2,
         stickiness: 0.0,

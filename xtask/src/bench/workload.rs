@@ -157,6 +157,7 @@ fn set_ball_and_ground(frame: &mut FrameInput) {
     frame.plane = Some(GroundPlane {
         origin: Vector3::zeros(),
         normal: Vector3::y(),
+        start: None,
         bounce: 0.0,
         friction,
         stickiness: 0.0,

@@ -37,10 +37,10 @@ pub struct Plane {
 encode_struct!([] Plane { origin: [f64; 3], normal: [f64; 3] });
 
 impl Plane {
-    /// The plane of a frame.
-    fn new(ground: &GroundPlane) -> Self {
-        let normal = ground.normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
-        Self { origin: ground.origin.into(), normal: normal.into() }
+    /// A plane through a point, given its normal of any length.
+    fn new(origin: Vector3<f64>, normal: Vector3<f64>) -> Self {
+        let normal = normal.try_normalize(0.0).unwrap_or_else(Vector3::y);
+        Self { origin: origin.into(), normal: normal.into() }
     }
 
     /// Height of a position above it, in metres.
@@ -71,13 +71,14 @@ impl<R: Real> Default for Ground<R> {
 }
 
 impl<R: Real> Ground<R> {
-    /// Takes up the plane of a frame. It starts where the last frame left it; a plane that appears or turns over
-    /// at once does not move. Points that do not collide with it are far above it.
+    /// Takes up the plane of a frame. Unless a start is given, it starts where the last frame left it; a plane that appears or
+    /// turns over at once does not move. Points that do not collide with it are far above it.
     /// Without anchors it is a plane for [`GroundStep::over`] alone.
     pub fn begin_frame(&mut self, ground: Option<&GroundPlane>, anchors: &[[f64; 3]], filter: &PairFilter) {
-        let now = ground.map(Plane::new);
+        let now = ground.map(|ground| Plane::new(ground.origin, ground.normal));
+        let given = ground.and_then(|ground| ground.start).map(|[origin, normal]| Plane::new(origin, normal));
         let turns_over = |last: &Plane| now.is_some_and(|now| dot(last.normal, now.normal) <= 0.0);
-        self.start = now.map(|now| self.end.filter(|last| !turns_over(last)).unwrap_or(now));
+        self.start = now.map(|now| given.or(self.end).filter(|last| !turns_over(last)).unwrap_or(now));
         self.end = now;
         let rests = self.start == self.end;
         let [at_start, at_end] = &mut self.heights;
@@ -356,7 +357,7 @@ mod tests {
 
     fn plane(origin: [f64; 3], normal: [f64; 3]) -> GroundPlane {
         let (origin, normal) = (origin.into(), normal.into());
-        GroundPlane { origin, normal, bounce: 0.0, friction: 0.0, stickiness: 0.0 }
+        GroundPlane { origin, normal, start: None, bounce: 0.0, friction: 0.0, stickiness: 0.0 }
     }
 
     fn half_way() -> StepInterval {
@@ -374,6 +375,16 @@ mod tests {
         let step = ground.in_step(half_way()).expect("a plane");
         assert!((step.height_now(0, [0.0; 3]) - 0.9).abs() < 1e-12);
         assert!((step.velocity(0, [0.0; 3], 0.5)[1] - 0.2).abs() < 1e-12, "it rises by 0.1 m in 0.5 s");
+    }
+
+    #[test]
+    fn a_plane_moves_from_the_given_start_of_a_frame() {
+        let mut ground = Ground::<f64>::default();
+        let start = Some([Vector3::new(0.0, -0.2, 0.0), Vector3::y()]);
+        let moving = GroundPlane { start, ..plane([0.0; 3], [0.0, 1.0, 0.0]) };
+        ground.begin_frame(Some(&moving), &[[0.0, 1.0, 0.0]], &PairFilter::default());
+        let step = ground.in_step(half_way()).expect("a plane");
+        assert!((step.height_now(0, [0.0; 3]) - 1.1).abs() < 1e-12);
     }
 
     #[test]

@@ -152,10 +152,13 @@ pub struct InputMesh {
 /// An infinite plane that cloth rests on (`usePlane`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundPlane {
-    /// A point of the plane in metres.
+    /// A point of the plane at the end of the frame, in metres.
     pub origin: Vector3<f64>,
-    /// Its normal, of any length.
+    /// Its normal at the end of the frame, of any length.
     pub normal: Vector3<f64>,
+    /// A point of it and its normal at the start of the frame. `None`: where the last frame left it; a plane that appears
+    /// does not move.
+    pub start: Option<[Vector3<f64>; 2]>,
     /// `planeBounce`: 0 none, 1 all.
     pub bounce: f64,
     /// `planeFriction`, added to the cloth's own.

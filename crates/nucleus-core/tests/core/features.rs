@@ -31,6 +31,7 @@ const FEATURES: [Feature; 7] = [
 const PLANE: GroundPlane = GroundPlane {
     origin: Vec3::new(0.0, -9.0, 0.0),
     normal: Vec3::new(0.0, 1.0, 0.0),
+    start: None,
     bounce: 0.0,
     friction: 0.0,
     stickiness: 0.0,

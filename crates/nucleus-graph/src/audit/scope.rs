@@ -43,8 +43,8 @@ impl GroundPlanes {
         self.nucleus(nucleus).planes = None;
     }
 
-    /// Takes the plane of a nucleus from the solver's input for a span of the frame. A plane without an earlier position
-    /// does not move in the span.
+    /// Takes the plane of a nucleus from the solver's input for a span of the frame. A plane without a start or an earlier
+    /// position does not move in the span.
     pub(crate) fn begin_span(
         &mut self,
         nucleus: usize,
@@ -54,7 +54,9 @@ impl GroundPlanes {
     ) {
         let nucleus = self.nucleus(nucleus);
         let end = input.plane.as_ref().and_then(|plane| Plane::new(plane.origin, plane.normal));
-        let start = nucleus.planes.map(|[_, end]| end);
+        let given = input.plane.and_then(|plane| plane.start);
+        let given = given.and_then(|[origin, normal]| Plane::new(origin, normal));
+        let start = given.or(nucleus.planes.map(|[_, end]| end));
         let collides = |cloth: &ClothFrame| cloth.collide && cloth.collide_strength > 0.0;
         nucleus.planes = end.map(|end| [start.unwrap_or(end), end]);
         nucleus.collides = input.cloths.iter().map(collides).collect();

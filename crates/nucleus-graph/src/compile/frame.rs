@@ -12,7 +12,7 @@ use nucleus_core::{
 
 use crate::animation::Affine;
 use crate::attributes::{Key, n_base, n_cloth, n_rigid, nucleus, particle};
-use crate::graph::NodeId;
+use crate::graph::{EvalContext, NodeId};
 use crate::scene::document::TimeSpan;
 
 use super::animated_mesh::Points;
@@ -48,7 +48,7 @@ impl Program {
         let TimeSpan { start, end, .. } = self.time();
         let at = |frame: i64| {
             let interval = self.interval(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
-            interval.ground_plane(&interval.nucleus_space())
+            interval.ground_plane()
         };
         (start..=end).filter_map(at).collect()
     }
@@ -70,7 +70,7 @@ impl EvaluationInterval<'_> {
         position: &dyn Fn(ClothId, PointId) -> Vector3<f64>,
     ) -> FrameInput {
         let (nucleus, to) = (self.nucleus.node, &self.to);
-        let space = self.nucleus_space();
+        let space = self.nucleus_space(to);
         let along = |direction: &Key<[f64; 3]>, size: &Key<f64>| {
             unit(space.linear * Vector3::from(to.get(nucleus, direction))) * to.get(nucleus, size)
         };
@@ -88,7 +88,7 @@ impl EvaluationInterval<'_> {
             gravity: along(&nucleus::GRAVITY_DIRECTION, &nucleus::GRAVITY),
             wind: along(&nucleus::WIND_DIRECTION, &nucleus::WIND_SPEED),
             air_density: to.get(nucleus, &nucleus::AIR_DENSITY),
-            plane: self.ground_plane(&space),
+            plane: self.ground_plane(),
             layer_range: to.get(nucleus, &nucleus::COLLISION_LAYER_RANGE),
             colliders: self.nucleus.colliders.iter().map(|collider| self.collider_frame(collider)).collect(),
             cloths: self.nucleus.cloths.iter().map(|cloth| self.active_frame(cloth)).collect(),
@@ -118,28 +118,38 @@ impl EvaluationInterval<'_> {
     }
 
     /// The frame of reference of the directions and the ground plane.
-    fn nucleus_space(&self) -> Affine {
-        let own = self.to.get(self.nucleus.node, &nucleus::USE_TRANSFORM);
-        if own { self.to.placement(self.nucleus.node) } else { Affine::identity() }
+    fn nucleus_space(&self, moment: &EvalContext<'_>) -> Affine {
+        let own = moment.get(self.nucleus.node, &nucleus::USE_TRANSFORM);
+        if own { moment.placement(self.nucleus.node) } else { Affine::identity() }
     }
 
-    fn ground_plane(&self, space: &Affine) -> Option<GroundPlane> {
+    /// The ground plane; `None` where it is off, and without a normal.
+    fn ground_plane(&self) -> Option<GroundPlane> {
         let (nucleus, to) = (self.nucleus.node, &self.to);
         if !to.get(nucleus, &nucleus::USE_PLANE) {
             return None;
         }
-        // A normal transforms by the inverse transpose, so that it stays normal to a scaled plane.
-        let turn = space.linear.try_inverse().unwrap_or_default().transpose();
-        let normal = turn * Vector3::from(to.get(nucleus, &nucleus::PLANE_NORMAL));
-        let origin = space.point(Vector3::from(to.get(nucleus, &nucleus::PLANE_ORIGIN)));
-        // Without a direction there is no plane.
-        (normal != Vector3::zeros()).then(|| GroundPlane {
-            origin: self.nucleus.units.point(origin),
+        let [origin, normal] = self.plane_at(to)?;
+        // The solver knows where it was if it has solved the interval before.
+        let is_unknown = self.is_first || self.is_discontinuous;
+        Some(GroundPlane {
+            origin,
             normal,
+            start: if is_unknown { self.plane_at(&self.from) } else { None },
             bounce: to.get(nucleus, &nucleus::PLANE_BOUNCE),
             friction: to.get(nucleus, &nucleus::PLANE_FRICTION),
             stickiness: to.get(nucleus, &nucleus::PLANE_STICKINESS),
         })
+    }
+
+    /// A point of the ground plane in metres, and its normal; `None` without a normal.
+    fn plane_at(&self, moment: &EvalContext<'_>) -> Option<[Vector3<f64>; 2]> {
+        let (nucleus, space) = (self.nucleus.node, self.nucleus_space(moment));
+        // A normal transforms by the inverse transpose, so that it stays normal to a scaled plane.
+        let turn = space.linear.try_inverse().unwrap_or_default().transpose();
+        let normal = turn * Vector3::from(moment.get(nucleus, &nucleus::PLANE_NORMAL));
+        let origin = space.point(Vector3::from(moment.get(nucleus, &nucleus::PLANE_ORIGIN)));
+        (normal != Vector3::zeros()).then(|| [self.nucleus.units.point(origin), normal])
     }
 
     fn active_frame(&self, cloth: &ClothSource) -> ClothFrame {

@@ -357,6 +357,21 @@ fn gravity_wind_and_ground_plane_are_in_the_space_of_the_nucleus() {
 }
 
 #[test]
+fn a_ground_plane_begins_the_first_interval_where_the_scene_begins() {
+    let keyed = "usePlane: true, ty: 3, planeOrigin: keys([(1, (0, 0, 0)), (3, (0, 1, 0))])";
+    let program = program(&sheet(keyed, ""));
+    let plane = program.first_input().plane.expect("it is used");
+    assert_eq!(plane.origin, Vector3::new(0.0, 3.5, 0.0));
+    assert_eq!(plane.start, Some([Vector3::new(0.0, 3.0, 0.0), Vector3::y()]));
+    let interval = |is_discontinuous| program.interval(0, [2.0, 3.0], 1.0, is_discontinuous);
+    let start = |interval: program::EvaluationInterval<'_>| {
+        let input = interval.input(&mut AttachmentState::default(), &|_, _| Vector3::zeros());
+        input.plane.expect("it is used").start.map(|[origin, _]| origin.y)
+    };
+    assert_eq!([false, true].map(|skipped| start(interval(skipped))), [None, Some(3.5)]);
+}
+
+#[test]
 fn a_direction_is_normalized_and_the_zero_direction_has_no_effect() {
     let gravity = |direction: &str| {
         program(&sheet(&format!("gravityDirection: {direction}"), "")).first_input().gravity

@@ -59,12 +59,19 @@ pub(super) fn sanitize_settings(frame: &mut FrameInput) -> bool {
             (&mut plane.stickiness, 0.0),
         ]);
         replaced |= raise_to_zero([&mut plane.bounce, &mut plane.friction, &mut plane.stickiness]);
-        if !is_in_range(&plane.origin) || !is_in_range(&plane.normal) || plane.normal == Vector3::zeros() {
+        if !is_plane(&plane.origin, &plane.normal) {
             frame.plane = None;
+            replaced = true;
+        } else if plane.start.is_some_and(|[origin, normal]| !is_plane(&origin, &normal)) {
+            plane.start = None;
             replaced = true;
         }
     }
     replaced
+}
+
+fn is_plane(origin: &Vector3<f64>, normal: &Vector3<f64>) -> bool {
+    is_in_range(origin) && is_in_range(normal) && *normal != Vector3::zeros()
 }
 
 pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {

@@ -47,8 +47,10 @@ impl<'a> Numbers<'a> {
         }
         self.add("wind and gravity", [&mut gravity.y, &mut wind.x, air_density, wind_noise]);
         self.add("layer range", [layer_range]);
-        let GroundPlane { origin, normal, bounce, friction, stickiness } = plane.as_mut().expect("a plane");
-        self.add("plane", [&mut origin.y, &mut normal.x, bounce, friction, stickiness]);
+        let GroundPlane { origin, normal, start, bounce, friction, stickiness } =
+            plane.as_mut().expect("a plane");
+        let [from, _] = start.get_or_insert([*origin, *normal]);
+        self.add("plane", [&mut origin.y, &mut normal.x, &mut from.y, bounce, friction, stickiness]);
         cloths.iter_mut().for_each(|cloth| self.cloth(cloth));
         colliders.iter_mut().for_each(|collider| self.collider(collider));
         for Pin { cloth: _, point: _, start, end } in pins {
