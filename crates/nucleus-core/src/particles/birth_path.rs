@@ -26,7 +26,8 @@ pub struct Obstacles {
     cloth: usize,
     /// The end of the substep, as a share of the frame. Colliders are fitted to it.
     end: f64,
-    /// The faces of cloth, their rows, and their velocities in metres per frame.
+    /// The faces of cloth, their rows, and their mean velocities since the start of the frame in metres per frame. Those of
+    /// one time step may be many times larger where cloth trembles.
     faces: PlacedSurface,
     rows: Vec<[u32; 3]>,
     velocities: Vec<Point>,
@@ -35,19 +36,18 @@ pub struct Obstacles {
 }
 
 impl Obstacles {
-    /// Those of an object near the paths of its new particles, in a frame of `duration` seconds.
+    /// Those of an object near the paths of its new particles.
     pub fn new<R: Real>(
         (model, state, contact): (&Model<R>, &State<R>, &mut ContactSystem<R>),
         cloth: usize,
         paths: impl Iterator<Item = [Point; 2]>,
         end: f64,
-        duration: f64,
     ) -> Self {
         fit_colliders(contact, model, cloth, end);
         let none = [Point::repeat(f64::INFINITY), Point::repeat(f64::NEG_INFINITY)];
         let bound = paths.fold(none, |[low, high], [a, b]| [low.inf(&a).inf(&b), high.sup(&a).sup(&b)]);
-        let velocity = |row: u32| Point::from(state.velocity[row as usize].xyz().map(R::to_f64));
-        let of_face = |[a, b, c]: [u32; 3]| (velocity(a) + velocity(b) + velocity(c)) * (duration / 3.0);
+        let moved = |row: u32| Point::from(state.displacement[row as usize].xyz().map(R::to_f64));
+        let of_face = |[a, b, c]: [u32; 3]| (moved(a) + moved(b) + moved(c)) / (3.0 * end);
         let is_near = |rows: &[u32; 3]| {
             let corners = rows.map(|row| Point::from(state.position(row)));
             overlaps(corners, bound, of_face(*rows).norm())

@@ -160,7 +160,7 @@ fn add_births<R: Real>(
     let paths = paths.filter(|path| path.iter().all(is_in_range));
     let living = object.points().map(|row| state.position(row).into());
     let mut occupancy = OccupancyGrid::of(&frame.cloths[cloth], living, corners(paths.clone().flatten()));
-    let obstacles = Obstacles::new((&*model, &*state, contact), cloth, paths, end, frame.duration);
+    let obstacles = Obstacles::new((&*model, &*state, contact), cloth, paths, end);
     for (birth, age, (mut position, mut velocity)) in flights {
         let population = &mut state.populations[index];
         let row = row_of + population.len() as u32;
