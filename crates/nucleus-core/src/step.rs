@@ -45,7 +45,7 @@ use crate::integrate::local_wind::{Objects, update_local_wind};
 use crate::integrate::predict::{max_speeds, predict, update_velocities};
 use crate::output::StepReport;
 use crate::output::{Stage, StepObserver, SubstepIndex};
-use crate::particles::events::collision_events;
+use crate::particles::events::find_collisions;
 use crate::particles::free::{advance_free_points, find_free_objects};
 use crate::particles::lifecycle::{age_particles, begin_particles};
 use crate::particles::population::Population;
@@ -280,7 +280,7 @@ fn solve_time_step<R: CompiledReal>(
     let is_free = &solver.contact.is_free;
     update_velocities(&solver.model.cloths, &mut solver.state, schedule.h, is_free, &solver.pool);
     apply_restitution(&mut solver.contact_pass(frame, schedule, span, counters));
-    collision_events(solver, span.to);
+    find_collisions(solver, span.to);
     observer.step(span.to, solver);
     ControlFlow::Continue(())
 }

@@ -18,23 +18,27 @@ use crate::state::State;
 /// Gap ratio up to which two elements are touching. Passes keep the full thickness along a plane; the constraint
 /// sweeps after them and curved meshes add a little.
 const TOUCHING_RATIO: f64 = 1.02;
-/// Gap ratio below which a contact is compressed.
+/// Gap ratio below which a contact is compressed, for observers.
 const COMPRESSED: f64 = 0.9;
 /// Smallest weight at which the corner of an edge or a face takes part in a contact.
 pub const MIN_WEIGHT: f64 = 0.25;
 
 /// The highest state so far of each row of the solver.
-struct HighestStates<'a>(&'a mut [ContactState]);
+struct HighestStates<'a> {
+    states: &'a mut [ContactState],
+    /// Gap ratio below which a contact is compressed.
+    compressed: f64,
+}
 
 impl HighestStates<'_> {
     fn raise(&mut self, point: u32, to: ContactState) {
-        let state = &mut self.0[point as usize];
+        let state = &mut self.states[point as usize];
         *state = (*state).max(to);
     }
 
     /// Raises a point by the ratio of its gap to its thickness.
     fn raise_by_gap(&mut self, point: u32, gap_ratio: f64) {
-        if gap_ratio < COMPRESSED {
+        if gap_ratio < self.compressed {
             self.raise(point, ContactState::Compressed);
         } else if gap_ratio < TOUCHING_RATIO {
             self.raise(point, ContactState::Touching);
@@ -57,7 +61,7 @@ pub fn list_contact_states<R: Real>(
     out.resize_with(model.cloths.len(), Vec::new);
     out.iter_mut().for_each(Vec::clear);
     let mut rows = Vec::new();
-    contact_states_of_rows(model, state, contact, &mut rows);
+    contact_states_of_rows(model, state, contact, COMPRESSED, &mut rows);
     if rows.is_empty() {
         return;
     }
@@ -67,18 +71,20 @@ pub fn list_contact_states<R: Real>(
     }
 }
 
-/// Replaces `rows` by the contact state of each row of the solver; empty where the scene can have no contact.
+/// Replaces `rows` by the contact state of each row of the solver, which is compressed below a ratio of its gap to its
+/// thickness; empty where the scene can have no contact.
 pub fn contact_states_of_rows<R: Real>(
     model: &Model<R>,
     state: &State<R>,
     contact: &ContactSystem<R>,
+    compressed: f64,
     rows: &mut Vec<ContactState>,
 ) {
     rows.clear();
     let points = ContactPoints { model, state, contact };
     if points.can_have_contact() {
         rows.resize(state.anchor.len(), ContactState::Free);
-        points.raise(&mut HighestStates(rows));
+        points.raise(&mut HighestStates { states: rows, compressed });
     }
 }
 

@@ -1,7 +1,9 @@
 //! Collision events: particles that emit, split or die when they collide (Maya's `event` command).
 //!
-//! A particle collides when it touches anything at the end of a time step and touched nothing at the end of the one before,
-//! so a particle that rests or slides has collided once. What it emits begins at the end of the substep.
+//! A particle collides when something has pushed it in a time step and it has touched nothing since its last collision, so a
+//! particle that rests or slides has collided once. What it emits begins at the end of the substep, where the particle
+//! is then and with its velocity after the rebound: the surface that it met has moved on, and may have passed the place of
+//! the collision.
 
 use nalgebra::Vector3;
 
@@ -47,29 +49,57 @@ impl Draws {
     }
 }
 
-/// Finds the collisions of a time step that ends at `time`, a share of the frame; marks particles that die of them, and lists the new particles.
-pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
+/// Gap over thickness up to which what a particle touches has pushed it. One that is only near has not rebounded yet.
+const PUSHED_RATIO: f64 = 1.001;
+
+/// Lists the collisions of a time step that ends at `time`, a share of the frame.
+pub fn find_collisions<R: Real>(solver: &mut Solver<R>, time: f64) {
     if solver.state.populations.iter().all(|population| population.events().is_empty()) {
         return;
     }
     solver.contact.set_time(time);
     let mut states = std::mem::take(&mut solver.contact.row_states);
-    contact_states_of_rows(&solver.model, &solver.state, &solver.contact, &mut states);
-    let mut populations = std::mem::take(&mut solver.state.populations);
-    let mut capacity = RemainingCapacity::of(&populations, solver.model.cloths.len());
+    contact_states_of_rows(&solver.model, &solver.state, &solver.contact, PUSHED_RATIO, &mut states);
+    let populations = &mut solver.state.populations;
     for population in populations.iter_mut().filter(|population| !population.events().is_empty()) {
-        let first = solver.model.cloths[population.cloth()].blocks.rows().start;
+        let first = solver.model.cloths[population.cloth()].blocks.rows().start as usize;
         for at in 0..population.len() {
-            let row = first + at as u32;
-            let touches = states.get(row as usize).is_some_and(|&state| state != ContactState::Free);
-            let Some(collision) = population.notice(at, touches) else { continue };
-            let place = Vector3::from(solver.state.position(row));
-            let velocity = Vector3::from(solver.state.velocity[row as usize].xyz().map(R::to_f64));
-            happen(population, at, collision, [place, velocity], &mut capacity);
+            population.notice(at, states.get(first + at).copied().unwrap_or(ContactState::Free));
         }
     }
-    solver.state.populations = populations;
     solver.contact.row_states = states;
+}
+
+/// The new particles of the collisions in a substep, and how many more there would be if the capacity allowed it; marks the
+/// particles that die of them.
+pub fn spawns_of_collisions<R: Real>(solver: &mut Solver<R>) -> (Vec<Spawn>, u64) {
+    let Solver { model, state, .. } = solver;
+    let mut populations = std::mem::take(&mut state.populations);
+    let mut spawns = Spawns {
+        all: Vec::new(),
+        refused: 0,
+        capacity: RemainingCapacity::of(&populations, model.cloths.len()),
+    };
+    for population in &mut populations {
+        let first = model.cloths[population.cloth()].blocks.rows().start;
+        for (at, collision) in std::mem::take(&mut population.collided) {
+            let row = first + at as u32;
+            let place = Vector3::from(state.position(row));
+            let velocity = Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
+            if !population.is_killed(at) {
+                happen(population, at, collision, [place, velocity], &mut spawns);
+            }
+        }
+    }
+    state.populations = populations;
+    (spawns.all, spawns.refused)
+}
+
+/// What collisions add.
+struct Spawns {
+    all: Vec<Spawn>,
+    refused: u64,
+    capacity: RemainingCapacity,
 }
 
 /// How many new particles each object can take up at the end of the substep, by the index of its cloth. None are made
@@ -77,13 +107,10 @@ pub fn collision_events<R: Real>(solver: &mut Solver<R>, time: f64) {
 struct RemainingCapacity(Vec<usize>);
 
 impl RemainingCapacity {
-    /// The capacity that the events of the substep so far leave. All particles that live now may die before.
+    /// The capacity before the events of a substep. All particles that live now may die of them.
     fn of(populations: &[Population], cloths: usize) -> Self {
         let mut capacity = vec![0; cloths];
         populations.iter().for_each(|population| capacity[population.cloth()] = population.capacity());
-        for spawn in populations.iter().flat_map(|population| &population.spawned) {
-            capacity[spawn.cloth] = capacity[spawn.cloth].saturating_sub(1);
-        }
         Self(capacity)
     }
 
@@ -102,12 +129,11 @@ fn happen(
     at: usize,
     collision: u32,
     [place, velocity]: [Vector3<f64>; 2],
-    capacity: &mut RemainingCapacity,
+    spawns: &mut Spawns,
 ) {
     let own = population.cloth();
     let facts = population.facts(at, 0.0);
-    let (mut dies, mut refused) = (false, 0);
-    let mut spawned = std::mem::take(&mut population.spawned);
+    let mut dies = false;
     for (k, event) in (0u64..).zip(population.events()) {
         let mut draws = Draws { key: [facts.id ^ (k + 1) << 48, u64::from(collision) << 32] };
         if (event.count != 0 && event.count != collision) || draws.next() >= event.probability {
@@ -117,11 +143,11 @@ fn happen(
         let emitted = u64::from(draws.count(event.emit, event.random));
         let parts = u64::from(draws.count(event.split, event.random)).saturating_sub(1);
         for (cloth, wanted, whole) in [(event.target.index(), emitted, None), (own, parts, Some(facts))] {
-            let made = capacity.take(cloth, wanted);
+            let made = spawns.capacity.take(cloth, wanted);
             for _ in 0..made {
                 let direction = draws.about(velocity, event.spread);
                 let drawn = (event.lifespan[0] + event.lifespan[1] * (draws.next() - 0.5)).max(0.0);
-                spawned.push(Spawn {
+                spawns.all.push(Spawn {
                     cloth,
                     position: place,
                     velocity: direction * velocity.norm(),
@@ -130,11 +156,9 @@ fn happen(
                 });
             }
             draws.pass_over(wanted - made, &velocity);
-            refused += wanted - made;
+            spawns.refused += wanted - made;
         }
     }
-    population.spawned = spawned;
-    population.spawns_refused += refused;
     if dies {
         population.kill(at);
     }

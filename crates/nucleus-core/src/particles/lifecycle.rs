@@ -14,6 +14,7 @@ use crate::input::{ClothId, PointId};
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
 use crate::particles::birth_path::Obstacles;
+use crate::particles::events::spawns_of_collisions;
 use crate::particles::occupancy::OccupancyGrid;
 use crate::particles::population::{Newborn, Population, Spawn};
 use crate::particles::ramps::apply_ramps;
@@ -37,17 +38,15 @@ pub fn age_particles<R: Real>(
         return false;
     }
     let length = frame.duration / f64::from(schedule.substeps);
+    let (spawned, refused) = spawns_of_collisions(solver);
+    counters.births_refused += refused;
     for index in 0..solver.state.populations.len() {
         accelerate(solver, index, length);
         solver.state.populations[index].advance(length);
     }
     let mut links_changed = false;
-    let populations = solver.state.populations.iter_mut();
-    let spawned: Vec<Spawn> =
-        populations.flat_map(|population| std::mem::take(&mut population.spawned)).collect();
     for index in 0..solver.state.populations.len() {
         let population = &mut solver.state.populations[index];
-        counters.births_refused += std::mem::take(&mut population.spawns_refused);
         let (cloth, before) = (population.cloth(), population.len());
         if let Some(kept) = population.remove_dead() {
             counters.deaths += (before - kept.len()) as u64;

@@ -6,7 +6,7 @@ use crate::bytes::{checkpoint_struct, encode_struct};
 use crate::input::frame::Birth;
 use crate::input::particles::{CollisionEvent, ParticleFacts, ParticleRamp, RampInput, RampTarget};
 use crate::model::objects::{Cloth, Mass, point_masses};
-use crate::output::Particle;
+use crate::output::{ContactState, Particle};
 
 /// The rotation of a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +37,7 @@ pub struct Newborn {
     pub touches: bool,
 }
 
-/// A particle that an event adds, at the place and with the velocity of the collision.
+/// A particle that an event adds.
 #[derive(Debug, Clone, Copy)]
 pub struct Spawn {
     /// Its object, by the index of its cloth.
@@ -75,10 +75,8 @@ pub struct Population {
     /// collision events.
     touches: Vec<bool>,
     collisions: Vec<u32>,
-    /// What its collisions in this substep add.
-    pub(super) spawned: Vec<Spawn>,
-    /// How many more they would have added if the capacity allowed it.
-    pub(super) spawns_refused: u64,
+    /// Its collisions in this substep: the particle, and the number of its collision.
+    pub(super) collided: Vec<(usize, u32)>,
     /// Factors by particle on the point field, the viscosity and the surface tension; empty without a ramp.
     field_factors: Vec<f32>,
     viscosity_factors: Vec<f32>,
@@ -111,7 +109,7 @@ checkpoint_struct!([] Population {
     values: [id, born, lifespan, mass, last_velocity, acceleration, touches, collisions, rotations, next_id, now],
     parts: [],
     rebuilt: [
-        spawned, spawns_refused, cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, rotates, topology, field_factors, viscosity_factors,
+        collided, cloth, capacity, next_death, considered, birth_mass, radius, ramps, events, rotates, topology, field_factors, viscosity_factors,
         tension_factors
     ],
 });
@@ -149,8 +147,7 @@ impl Population {
             acceleration: Vec::new(),
             touches: Vec::new(),
             collisions: Vec::new(),
-            spawned: Vec::new(),
-            spawns_refused: 0,
+            collided: Vec::new(),
             rotations: Vec::new(),
             rotates: particles.rotates,
             topology: 0,
@@ -292,15 +289,21 @@ impl Population {
         self.ramps.iter().any(|ramp| ramp.input == RampInput::Acceleration)
     }
 
-    /// Notices whether a particle touches anything. Returns the number of the collision if one begins; none begins once it
-    /// is to die.
-    pub fn notice(&mut self, at: usize, touches: bool) -> Option<u32> {
-        let before = std::mem::replace(&mut self.touches[at], touches);
-        if before || !touches || self.lifespan[at] <= 0.0 {
-            return None;
+    /// Notices the contact state of a particle at the end of a time step, compressed where something has pushed it, and lists
+    /// the collision if one begins.
+    pub fn notice(&mut self, at: usize, state: ContactState) {
+        let is_pushed = state > ContactState::Touching;
+        let before = self.touches[at];
+        self.touches[at] = is_pushed || before && state != ContactState::Free;
+        if is_pushed && !before {
+            self.collisions[at] = self.collisions[at].saturating_add(1);
+            self.collided.push((at, self.collisions[at]));
         }
-        self.collisions[at] = self.collisions[at].saturating_add(1);
-        Some(self.collisions[at])
+    }
+
+    /// Whether a particle is to die at the next occasion.
+    pub fn is_killed(&self, at: usize) -> bool {
+        self.lifespan[at] <= 0.0
     }
 
     /// Lets a particle die at the next occasion.
@@ -413,8 +416,7 @@ impl Population {
             // Not by particle.
             cloth: _,
             capacity: _,
-            spawned: _,
-            spawns_refused: _,
+            collided: _,
             rotates: _,
             topology: _,
             next_id: _,

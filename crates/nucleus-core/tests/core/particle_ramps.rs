@@ -2,9 +2,9 @@
 
 use crate::scenes::{Vec3, frame, ground, still};
 use nucleus_core::{
-    Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, CollisionEvent, Elements, FrameInput, Mass,
-    ModelBuilder, ParticleChange, ParticleRamp, Particles, PointId, RampInput, RampTarget, ResistanceModel,
-    SelfCollision, Solver, StateView, Surface,
+    Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, CollisionEvent, Elements,
+    FrameInput, Mass, ModelBuilder, ParticleChange, ParticleRamp, Particles, PointId, RampInput, RampTarget,
+    ResistanceModel, SelfCollision, Solver, Start, StateView, Surface,
 };
 
 const BEADS: ClothId = ClothId(0);
@@ -162,6 +162,44 @@ fn an_event_happens_at_its_collision_and_new_particles_fly_with_the_rebound() {
     let mut fast = Vec::new();
     narrow.velocities(BEADS, 1.0, &mut fast);
     assert!(fast.len() == 5 && fast.iter().all(|v| (v[1] - fast[0][1]).abs() < 0.3), "{fast:?}");
+}
+
+#[test]
+fn parts_of_a_particle_rebound_with_it_from_a_sheet_that_moves_at_them() {
+    for bounce in [0.0, 0.5] {
+        let event = CollisionEvent { split: 4, spread: 0.2, ..NOTHING };
+        let particles = Particles { capacity: 64, radius: 0.05, events: vec![event], ..Particles::default() };
+        let start = Start { velocities: vec![Vec3::y() * -3.0], ..Start::default() };
+        let bead = Cloth { start, ..cloth(&[Vec3::new(0.1, 0.0, 0.2)], particles) };
+        let mut builder = ModelBuilder::new();
+        builder.cloth(bead).expect("a good object");
+        let at = |height: f64| -> Vec<Vec3> {
+            [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|[x, z]| Vec3::new(x, height, z)).into()
+        };
+        let faces = [[0, 1, 2, 3]].iter().map(|face| &face[..]).collect();
+        let sheet = Surface { positions: at(-0.5), faces };
+        builder.collider(Collider { surface: sheet }).expect("a good mesh");
+        let mut solver: Solver = Solver::new(builder, 1);
+        let still = SelfCollision { on: false, ..balls(0.05).self_collision };
+        let settings = ClothFrame { bounce, self_collision: still, ..balls(0.05) };
+        let mut input = solver.default_frame();
+        (input.gravity, input.cloths[0]) = (Vec3::zeros(), settings);
+        input.colliders[0].friction = 0.0;
+        let mut height = -0.5;
+        for _ in 0..6 {
+            height += 5.0 / 24.0;
+            input.colliders[0].end = at(height);
+            solver.step(&input, &mut ());
+        }
+        let (mut places, mut fast) = (Vec::new(), Vec::new());
+        solver.positions(BEADS, 1.0, &mut places);
+        solver.velocities(BEADS, 1.0, &mut fast);
+        // Seen from the sheet they come at 8 m/s.
+        let rebound = 5.0 + 8.0 * bounce;
+        assert_eq!(places.len(), 4);
+        assert!(places.iter().all(|place| f64::from(place[1]) > height), "{bounce}: {places:?} at {height}");
+        assert!(fast.iter().all(|v| f64::from(v[1]) > 0.9 * rebound), "{bounce}: {fast:?}");
+    }
 }
 
 #[test]
