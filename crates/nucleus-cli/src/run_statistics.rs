@@ -174,6 +174,8 @@ pub struct RunStatistics {
     pub worst_strain: Option<(f64, i32)>,
     /// The largest strain that 1 % of the links exceed, and its frame.
     pub worst_strain_99: Option<(f64, i32)>,
+    /// The largest mean excess of density of a liquid, and its frame.
+    pub worst_compression: Option<(f64, i32)>,
     /// The smallest gap over thickness, and its frame. `None` if there was no contact.
     pub smallest_gap: Option<(f64, i32)>,
     /// Pairs of elements that the safeguard left unresolved, over all time steps.
@@ -242,6 +244,9 @@ impl RunStatistics {
         }
         if self.worst_strain_99.is_none_or(|(worst, _)| figures.strain_99 > worst) {
             self.worst_strain_99 = Some((figures.strain_99, frame));
+        }
+        if self.worst_compression.is_none_or(|(worst, _)| figures.density_error > worst) {
+            self.worst_compression = Some((figures.density_error, frame));
         }
         if let Some(gap) =
             figures.min_gap.filter(|&gap| self.smallest_gap.is_none_or(|(least, _)| gap < least))

@@ -69,8 +69,9 @@ impl Summary<'_> {
         warnings::unresolved_contact(&self.statistics, self.checks, self.audit.is_some())
     }
 
-    fn warning(&self) -> Option<String> {
-        warnings::large_strain(&self.statistics, self.checks)
+    fn warnings(&self) -> Vec<String> {
+        let all = [warnings::large_strain, warnings::large_compression];
+        all.into_iter().filter_map(|warning| warning(&self.statistics, self.checks)).collect()
     }
 
     fn hint(&self) -> Option<String> {
@@ -126,7 +127,7 @@ impl Summary<'_> {
             .for_each(|audit| text += &audit_lines(audit, statistics.passed_through_before));
         let tolerated = warnings::tolerated(statistics, self.checks);
         for line in
-            tolerated.into_iter().chain(self.unresolved_contact()).chain(self.warning()).chain(self.hint())
+            tolerated.into_iter().chain(self.unresolved_contact()).chain(self.warnings()).chain(self.hint())
         {
             writeln!(text, "{line}")?;
         }
@@ -205,7 +206,7 @@ impl Summary<'_> {
             "depenetrating": over_run(&statistics.depenetrating),
             "intersections": over_run(&statistics.intersections),
             "unresolved_contact": self.unresolved_contact(),
-            "warning": self.warning(),
+            "warning": Some(self.warnings().join("\n")).filter(|text| !text.is_empty()),
             "hint": self.hint(),
             "sanitized": statistics.sanitized,
             "first_sanitized": statistics.first_sanitized.map(|(input, _)| self.sanitized(input)),

@@ -1,12 +1,16 @@
 //! Warnings at the end of a run. Unresolved contact fails the run; large strain only warns.
 
-use nucleus_graph::checks::{MAX_DEPENETRATING, MAX_INTERSECTIONS, MAX_STRETCH, MAX_UNRESOLVED, Outcome};
+use nucleus_graph::checks::{
+    MAX_DEPENETRATING, MAX_INTERSECTIONS, MAX_STRETCH, MAX_UNRESOLVED, Outcome, VOLUME_ERROR,
+};
 
 use crate::figures;
 use crate::run_statistics::{Count, RunStatistics};
 
 /// Strain above which a run warns, unless a check of the scene sets a limit.
 const MAX_STRAIN: f64 = 0.2;
+/// Mean excess of density of a liquid above which a run warns, unless a check of the scene sets a limit.
+const MAX_COMPRESSION: f64 = 0.1;
 
 const ADVICE: &str = "try more `subSteps` or `evaluations` of the nucleus, a smaller `thickness`, or more room between \
                    colliders";
@@ -107,6 +111,19 @@ pub fn large_strain(statistics: &RunStatistics, checks: &[Outcome]) -> Option<St
     })
 }
 
+/// A warning if the largest mean excess of density of a liquid is above the limit.
+pub fn large_compression(statistics: &RunStatistics, checks: &[Outcome]) -> Option<String> {
+    let (compression, frame) = statistics.worst_compression?;
+    let is_checked = limit(checks, VOLUME_ERROR).is_some();
+    (!is_checked && compression > MAX_COMPRESSION).then(|| {
+        format!(
+            "warning: liquid is compressed by {} at frame {frame}: it may have too little room between what it touches;              allow it with the check `{VOLUME_ERROR}(frame: {frame}, share: {})`",
+            figures::percent(compression),
+            figures::number((100.0 * compression).ceil() / 100.0)
+        )
+    })
+}
+
 /// A hint at what lets cloths fold that are pressed together and stay flat.
 pub fn flat(cloths: &[String]) -> Option<String> {
     let first = cloths.first()?;
@@ -194,6 +211,18 @@ mod tests {
         assert!(said[3].contains(&checks_to_add), "{said:?}");
         let rest = unresolved_contact(&statistics, &checks(MAX_DEPENETRATING, 9.0), false);
         assert!(rest[0].contains("3 intersections") && rest.len() == 3, "{rest:?}");
+    }
+
+    #[test]
+    fn liquid_that_is_compressed_by_a_tenth_is_a_warning_unless_the_scene_checks_its_volume() {
+        let dense = |density_error| StepReport { density_error, ..StepReport::default() };
+        let statistics = |worst| statistics(&[dense(0.01), dense(worst), dense(0.0)]);
+        assert_eq!(large_compression(&statistics(0.1), &[]), None);
+        let said = large_compression(&statistics(0.3456), &[]).unwrap();
+        assert!(said.starts_with("warning: liquid is compressed by 34.56 % at frame 3: "), "{said}");
+        assert!(said.ends_with("`volumeError(frame: 3, share: 0.35)`"), "{said}");
+        let check = Check::new(VOLUME_ERROR, &[3.0, 0.5]).unwrap();
+        assert_eq!(large_compression(&statistics(0.3456), Judge::new(&[check], 1.0).outcomes()), None);
     }
 
     #[test]

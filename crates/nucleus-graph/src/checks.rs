@@ -109,6 +109,8 @@ pub const MAX_UNRESOLVED: &str = "maxUnresolved";
 pub const MAX_DEPENETRATING: &str = "maxDepenetrating";
 /// The check of cloth edges that intersect cloth faces. A run without it fails if it ends with any.
 pub const MAX_INTERSECTIONS: &str = "maxIntersections";
+/// The check of the volume of liquids. A run without it warns of large compression.
+pub const VOLUME_ERROR: &str = "volumeError";
 /// The check of strain. A run without it warns of large strain.
 pub const MAX_STRETCH: &str = "maxStretch";
 
@@ -214,7 +216,7 @@ static FORMS: [Form; 18] = [
         "No frame has more particles than this in objects with births and deaths.",
     ).taking(Values::Counts),
     at_most(
-        "volumeError",
+        VOLUME_ERROR,
         &["frame", "share"],
         |sample| Some(sample.report.density_error),
         "From this frame on the mean excess density of liquids is at most this share of their rest density.",

@@ -6,10 +6,10 @@ use nucleus_core::{
     FrameInput, Liquid, Mass, ModelBuilder, Particles, ResistanceModel, Solver, Start, StateView, Surface,
 };
 
-const WATER: ClothId = ClothId(0);
+pub const WATER: ClothId = ClothId(0);
 
 /// A block of so many particles along each axis, from a corner.
-fn block(corner: Vec3, counts: [usize; 3], spacing: f64) -> Vec<Vec3> {
+pub fn block(corner: Vec3, counts: [usize; 3], spacing: f64) -> Vec<Vec3> {
     let [x, y, z] = counts;
     let place = |k: usize| {
         let place = Vec3::new((k % x) as f64, (k / (x * z)) as f64, (k / x % z) as f64);
@@ -19,13 +19,13 @@ fn block(corner: Vec3, counts: [usize; 3], spacing: f64) -> Vec<Vec3> {
 }
 
 /// Water of these particles, of 1000 kg/m³.
-fn water(positions: Vec<Vec3>, velocities: Vec<Vec3>, spacing: f64) -> Cloth {
+pub fn water(positions: Vec<Vec3>, velocities: Vec<Vec3>, spacing: f64) -> Cloth {
     let start = Start { velocities, ..Start::default() };
     let surface = Surface { positions, faces: Faces::default() };
     Cloth { start, ..Cloth::new(surface, Mass::PerPoint(1000.0 * spacing.powi(3)), ClothLists::NONE) }
 }
 
-fn liquid(spacing: f64) -> ClothFrame {
+pub fn liquid(spacing: f64) -> ClothFrame {
     let liquid = Liquid { spacing, incompressibility: 1.0, viscosity: 0.0, surface_tension: 0.0 };
     ClothFrame {
         thickness: 0.4 * spacing,
@@ -37,7 +37,7 @@ fn liquid(spacing: f64) -> ClothFrame {
 }
 
 /// Upright walls about a box on the ground, from these corners in x and z, up to a height. They reach beyond its edges.
-fn walls([low, high]: [[f64; 2]; 2], height: f64) -> Vec<Surface> {
+pub fn walls([low, high]: [[f64; 2]; 2], height: f64) -> Vec<Surface> {
     const BEYOND: f64 = 0.1;
     let side = |from: Vec3, along: Vec3, length: f64| {
         let quad = grid(2, 2, along * (length + 2.0 * BEYOND), Vec3::y() * (height + BEYOND));
@@ -52,7 +52,7 @@ fn walls([low, high]: [[f64; 2]; 2], height: f64) -> Vec<Surface> {
     ]
 }
 
-trait Moved {
+pub trait Moved {
     fn moved(self, by: Vec3) -> Self;
 }
 
@@ -63,7 +63,7 @@ impl Moved for Surface {
     }
 }
 
-fn built(cloths: impl IntoIterator<Item = Cloth>, colliders: Vec<Surface>) -> ModelBuilder {
+pub fn built(cloths: impl IntoIterator<Item = Cloth>, colliders: Vec<Surface>) -> ModelBuilder {
     let mut builder = ModelBuilder::new();
     for cloth in cloths {
         builder.cloth(cloth).expect("good points");
@@ -74,7 +74,7 @@ fn built(cloths: impl IntoIterator<Item = Cloth>, colliders: Vec<Surface>) -> Mo
     builder
 }
 
-fn frictionless(count: usize) -> Vec<ColliderFrame> {
+pub fn frictionless(count: usize) -> Vec<ColliderFrame> {
     vec![ColliderFrame { collide: true, ..ColliderFrame::default() }; count]
 }
 

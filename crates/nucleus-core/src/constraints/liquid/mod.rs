@@ -6,9 +6,11 @@
 //! of all constraints do. Inside, lengths are in rest distances, from where its first particle begins the frame.
 //!
 //! A liquid is set up again at the start of each frame, so a checkpoint stores nothing of it, and after births and
-//! deaths. Within a frame it keeps the pressure and the excess density of each particle: an excess from before a time
-//! step, as between particles that were born too near, is removed at a limited rate, because its correction becomes
-//! velocity.
+//! deaths. Within a frame it keeps the pressure of each particle, and the excess of density that the solver has left: that
+//! goes at a limited rate, because its correction becomes velocity. The constraint is linear, so there is more of it at the
+//! end of a step, most where walls move far or leave no room. It is measured at the start of the next, of which at most so
+//! much goes at once as an approach at a limited speed makes. Taken for motion of that step, it made a liquid leave a floor
+//! that starts at 8 m/s with 29 m/s, and one that a piston left no room reached 37 km/s.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -50,10 +52,14 @@ use time_step::{LiquidInterval, LiquidMotion};
 use viscosity::Viscosity;
 use walls::{Corner, Material, Plane, Walls};
 
-/// Rate at which an excess of density from before a time step goes, in 1/s.
+/// Rate at which an excess of density that the solver has left goes, in 1/s.
 const RECOVERY: f32 = 10.0;
 /// Largest share of it that goes in a time step.
 const MAX_RECOVERY: f32 = 0.5;
+/// Speed in m/s of particles towards each other that makes as much excess in a time step as goes in one of that from before,
+/// whatever its cause. At 0.1 m/s falling honey was compressed by a third; at 1 m/s a floor that starts at 8 m/s threw a
+/// liquid off at 10.
+const RECOVERY_SPEED: f64 = 0.6;
 /// Least radius in rest distances of the ball of liquid that a particle of another object counts as.
 const MIN_BALL: f32 = 0.05;
 /// Radius of a ball of the volume of a cube, in sides of the cube: the third root of 3 / 4 pi.
@@ -68,9 +74,11 @@ pub struct LiquidSolver {
     walls: Walls,
     density: Density,
     viscosity: Viscosity,
-    /// By particle: the multiplier over the squared time step, and the excess of density.
+    /// By particle: the multiplier over the squared time step, the excess of density that earlier steps have left, and all of
+    /// it before the time step.
     pressure: Vec<f32>,
     excess: Vec<f32>,
+    before: Vec<f32>,
     positions: Vec<[f32; 3]>,
     velocities: Vec<[f32; 4]>,
     loads: Vec<Load>,
@@ -179,8 +187,11 @@ impl LiquidSolver {
             ahead,
             span,
         };
+        self.measure(scene, state, &step, pool);
         if begins {
-            self.begin(scene, state, &step, pool);
+            self.pressure.clear();
+            self.pressure.resize(rows.len(), 0.0);
+            self.excess.clone_from(&self.before);
         }
         self.gather(scene, state, &step, step.ahead);
         self.find_walls(scene, state, &step);
@@ -191,23 +202,22 @@ impl LiquidSolver {
 }
 
 impl LiquidSolver {
-    /// Begins a frame: no pressure, and the excess of density before the time step.
-    fn begin<R: Real>(
+    /// Measures the excess of density of each particle before the time step.
+    fn measure<R: Real>(
         &mut self,
         scene: LiquidScene<'_, R>,
         state: &State<R>,
         step: &LiquidStep,
         pool: &ThreadPool,
     ) {
+        let before = LiquidStep { span: StepInterval { to: step.span.from, ..step.span }, ..*step };
         self.gather(scene, state, step, step.ahead - step.h);
-        self.find_walls(scene, state, step);
+        self.find_walls(scene, state, &before);
         self.neighbours.find(&self.positions, &self.walls, pool);
-        self.pressure.clear();
-        self.pressure.resize(self.positions.len(), 0.0);
-        self.excess.clear();
-        self.excess.resize(self.positions.len(), 0.0);
+        self.before.clear();
+        self.before.resize(self.positions.len(), 0.0);
         for (&particle, sums) in self.neighbours.grid.order().iter().zip(&self.neighbours.sums) {
-            self.excess[particle as usize] = (sums[0] - 1.0).max(0.0);
+            self.before[particle as usize] = (sums[0] - 1.0).max(0.0);
         }
     }
 
@@ -324,7 +334,9 @@ impl LiquidSolver {
 
     /// Computes the load of the pressure solver, after viscosity and surface tension.
     fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
-        let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, factors, .. } = self;
+        let Self {
+            neighbours, density, viscosity, pressure, excess, before, velocities, loads, factors, ..
+        } = self;
         let LiquidStep { settings, h, .. } = *step;
         let order = neighbours.grid.order();
         let by_particle = state.population_of(step.cloth).map_or([&[][..]; 2], Population::liquid_factors);
@@ -349,6 +361,7 @@ impl LiquidSolver {
         let tension = (settings.surface_tension * squared * per_metre) as f32;
         let pull = surface_tension::strength(tension) * (h * h) as f32;
         let recovery = (RECOVERY * h as f32).min(MAX_RECOVERY);
+        let most_at_once = (RECOVERY_SPEED * h * per_metre) as f32;
         density.lambda.resize(order.len(), 0.0);
         loads.resize(order.len(), Load::default());
         let (lambda, loads) = (DisjointSlice::new(&mut density.lambda), DisjointSlice::new(loads));
@@ -372,11 +385,14 @@ impl LiquidSolver {
                 let now = neighbours.sums[at][0] - 1.0;
                 // SAFETY: the order holds each particle once.
                 #[allow(unsafe_code)]
-                let before = unsafe { excess.get(particle) };
-                // Remaining excess of earlier time steps. The excess of a compressible liquid follows from its pressure.
+                let left = unsafe { excess.get(particle) };
+                // What stays of the excess from before. The excess of a compressible liquid follows from its pressure.
                 let kept = match settings.incompressibility < 1.0 {
                     true => 0.0,
-                    false => (before * (1.0 - recovery)).min(now).max(0.0),
+                    false => {
+                        let stays = (left * (1.0 - recovery)).max(before[particle as usize] - most_at_once);
+                        stays.min(now).max(0.0)
+                    }
                 };
                 // SAFETY: as above.
                 #[allow(unsafe_code)]
