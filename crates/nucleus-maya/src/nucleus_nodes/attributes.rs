@@ -222,7 +222,7 @@ impl Importer<'_> {
     /// Whether a plug that is carried over, too, drives an attribute: then a connection says so.
     ///
     /// A cache that drives `playFromCache` is reported with its object.
-    fn is_fed_by_kept(&self, from: NodeId, names: &[&str]) -> bool {
+    pub(super) fn is_fed_by_kept(&self, from: NodeId, names: &[&str]) -> bool {
         let Some(wire) = self.scene.source(from, names, None) else { return false };
         let is_apart = matches!(self.scene.kind(wire.from.node), "time" | "cacheFile" | "cacheBlend");
         is_apart || self.plug(wire.from).is_some()

@@ -1,12 +1,12 @@
-//! Constraints: their type, which Maya does not store, and their components.
+//! Constraints and their components.
 
 use nucleus_graph::attributes::{
-    Choice, Component, ElementKind, Selection, Value, Which, dynamic_constraint, n_component, read_component,
+    Component, ElementKind, Selection, Value, Which, dynamic_constraint, n_component, read_component,
 };
 use nucleus_graph::graph::{Creation, NodeId as OwnId, Setting};
 
 use crate::omissions::Cause;
-use crate::scene::{ANY, MayaScene, NodeId};
+use crate::scene::{ANY, NodeId};
 
 use super::importer::Importer;
 use super::kept::nucleus_of;
@@ -22,16 +22,47 @@ const LISTED: u32 = 0;
 const BORDERS: u32 = 1;
 
 /// A component node of a constraint.
-struct Part {
+pub(super) struct Part {
     node: NodeId,
     index: u32,
-    object: OwnId,
+    pub(super) object: OwnId,
     name: String,
     kind: u32,
     elements: u32,
     list: Vec<u32>,
     /// Whether the short form of a scene says all of it.
     is_plain: bool,
+}
+
+impl Part {
+    /// Whether it stands for the borders of its object.
+    pub(super) fn is_border(&self) -> bool {
+        self.kind == EDGE && self.elements == BORDERS
+    }
+
+    /// Whether points can be joined to the nearest place of it.
+    pub(super) fn is_surface(&self) -> bool {
+        matches!(self.kind, FACE | WHOLE)
+    }
+
+    /// The points that it joins one by one.
+    pub(super) fn points(&self) -> PointsOfPart {
+        match (self.kind, self.elements) {
+            (POINT, LISTED) => PointsOfPart::Listed(self.list.len()),
+            (POINT | WHOLE, _) => PointsOfPart::All,
+            _ => PointsOfPart::None,
+        }
+    }
+}
+
+/// The points of a component.
+pub(super) enum PointsOfPart {
+    /// A number of them.
+    Listed(usize),
+    /// Those of its object.
+    All,
+    /// It has other elements.
+    None,
 }
 
 /// How a constraint is connected.
@@ -71,11 +102,7 @@ impl Importer<'_> {
     fn form_of(&mut self, from: NodeId, to: OwnId) -> Form {
         let parts = self.parts_of(from);
         if !self.is_own {
-            let number = type_of(self.scene, from, &parts);
-            if number != 0 {
-                let row = &dynamic_constraint::CONSTRAINT_TYPE.row;
-                self.set(to, row, Setting::Fixed(Value::Choice(Choice(number))));
-            }
+            self.set_constraint_type(from, to, &parts);
         }
         let key = |part: &Part| (part.object, part.kind);
         let repeated = (1..parts.len()).any(|k| parts[..k].iter().any(|other| key(other) == key(&parts[k])));
@@ -241,38 +268,6 @@ fn runs(list: &[u32]) -> Vec<(u32, u32)> {
         }
     }
     runs
-}
-
-/// The creation type of a constraint, by the values that each of Maya's commands sets.
-fn type_of(scene: &MayaScene, id: NodeId, parts: &[Part]) -> i32 {
-    let number = |names: &[&str], default| scene.stored_or(id, names, default);
-    let relation = number(&["crr", "constraintRelation"], 1.0);
-    let components = number(&["cmr", "componentRelation"], 0.0);
-    let method = number(&["cm", "constraintMethod"], 1.0);
-    let excludes = scene.switch_or(id, &["excs", "excludeCollisions"], false);
-    if excludes && number(&["str", "strength"], 20.0) == 0.0 {
-        return if relation == 0.0 { 8 } else { 9 };
-    }
-    if relation == 0.0 {
-        let is_force = number(&["for", "force"], 0.0) != 0.0 && number(&["str", "strength"], 20.0) == 0.0;
-        return if is_force { 5 } else { 0 };
-    }
-    if number(&["cu", "connectionUpdate"], 0.0) != 0.0 {
-        return 3;
-    }
-    if components != 0.0 {
-        let is_border = parts.iter().any(|part| part.kind == EDGE && part.elements == BORDERS);
-        return match (method == 0.0, is_border) {
-            (true, true) => 4,
-            (true, false) => 7,
-            _ => 1,
-        };
-    }
-    if number(&["rls", "restLengthScale"], 1.0) == 0.0 {
-        return 6;
-    }
-    let is_surface = |part: &Part| !matches!(part.kind, POINT);
-    if parts.first().is_some_and(is_surface) { 2 } else { 1 }
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 //! | recorded results that an object plays                 | `caches.rs`, `tracks.rs` |
 //! | collision events of particles                         | `events.rs`         |
 //! | objects, constraints, fields and their connections    | `wiring.rs`, `constraints.rs` |
+//! | the menu type of a constraint                        | `constraint_type.rs` |
 //! | all of it in order                                    | [`Importer`]        |
 //!
 //! **Invariant:** attributes are carried over by the tables of `nucleus_graph::attributes`; nothing here lists the
@@ -16,6 +17,7 @@
 
 mod attributes;
 mod caches;
+mod constraint_type;
 mod constraints;
 mod events;
 mod importer;

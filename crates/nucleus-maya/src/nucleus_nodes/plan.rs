@@ -1,6 +1,6 @@
 //! How each mesh of a Maya scene is imported.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
 use nucleus_core::Surface;
@@ -29,6 +29,8 @@ pub(super) enum Plan {
 /// The elements of a mesh: Maya's points and faces have the same numbers here, its edges others.
 pub(super) struct Elements {
     pub(super) points: usize,
+    /// Whether several points are in one place, as where a mesh is split to tear.
+    pub(super) is_split: bool,
     faces: usize,
     /// Our number of each of Maya's edges; `None` for one that no face has.
     edges: Vec<Option<u32>>,
@@ -52,19 +54,20 @@ impl Plan {
 impl Elements {
     /// Those of particles.
     pub(super) fn of_points(points: usize) -> Self {
-        Self { points, faces: 0, edges: Vec::new() }
+        Self { points, is_split: false, faces: 0, edges: Vec::new() }
     }
 
     fn of_surface(surface: &Surface) -> Self {
-        Self::new(surface.positions.len(), surface.faces.iter(), &[])
+        let points: Vec<[f64; 3]> = surface.positions.iter().map(|point| (*point).into()).collect();
+        Self::new(&points, surface.faces.iter(), &[])
     }
 
     fn of_poly(mesh: &Poly) -> Self {
-        Self::new(mesh.points.len(), mesh.faces(), &mesh.stored_edges)
+        Self::new(&mesh.points, mesh.faces(), &mesh.stored_edges)
     }
 
     /// A mesh file has no edges, so ours are numbered in the order in which faces name them.
-    fn new<'a>(points: usize, all: impl Iterator<Item = &'a [u32]>, stored: &[[u32; 2]]) -> Self {
+    fn new<'a>(points: &[[f64; 3]], all: impl Iterator<Item = &'a [u32]>, stored: &[[u32; 2]]) -> Self {
         let key = |a: u32, b: u32| [a.min(b), a.max(b)];
         let mut numbers: HashMap<[u32; 2], u32> = HashMap::new();
         let mut faces = 0;
@@ -79,7 +82,10 @@ impl Elements {
             [] => (0..numbers.len() as u32).map(Some).collect(),
             stored => stored.iter().map(|[a, b]| numbers.get(&key(*a, *b)).copied()).collect(),
         };
-        Self { points, faces, edges }
+        let mut places = HashSet::new();
+        // The sum makes one zero of both.
+        let is_split = !points.iter().all(|point| places.insert(point.map(|x| (x + 0.0).to_bits())));
+        Self { points: points.len(), is_split, faces, edges }
     }
 
     /// Our number of one of Maya's elements; `None` if the mesh does not have it.
@@ -102,7 +108,8 @@ mod tests {
         // Two triangles on the diagonal 0 2, which the file stores first, and an edge without a face.
         let stored = [[2, 0], [3, 4], [0, 1], [1, 2], [2, 3], [3, 0]];
         let faces: [&[u32]; 2] = [&[0, 1, 2], &[0, 2, 3]];
-        let elements = Elements::new(5, faces.into_iter(), &stored);
+        let points: [[f64; 3]; 5] = std::array::from_fn(|point| [point as f64, 0.0, 0.0]);
+        let elements = Elements::new(&points, faces.into_iter(), &stored);
         let edges = [0, 1, 2, 3, 4, 5, 6].map(|edge| elements.number(ElementKind::Edge, edge));
         assert_eq!(edges, [Some(2), None, Some(0), Some(1), Some(3), Some(4), None]);
         assert_eq!([1, 2].map(|face| elements.number(ElementKind::Face, face)), [Some(1), None]);
