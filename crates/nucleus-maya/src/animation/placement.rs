@@ -2,7 +2,7 @@
 
 use nucleus_graph::animation::sin_cos_degrees;
 
-use crate::scene::NodeId;
+use crate::scene::{NodeId, is_shape};
 
 use super::evaluator::Evaluator;
 use super::names;
@@ -153,8 +153,11 @@ impl Evaluator<'_> {
         (scale != [1.0; 3]).then(|| scale.map(|s| if s == 0.0 { 1.0 } else { 1.0 / s }))
     }
 
-    /// The placement of a transform in the space of its parent.
+    /// The placement of a transform in the space of its parent; a shape is where its transform is.
     pub fn local(&self, id: NodeId, frame: f64) -> Matrix {
+        if is_shape(self.scene.kind(id)) {
+            return Matrix::IDENTITY;
+        }
         let scale = self.vector(id, names::SCALE, [1.0; 3], frame);
         let shear = self.vector(id, names::SHEAR, [0.0; 3], frame);
         let order = self.scene.stored_or(id, names::ROTATE_ORDER, 0.0) as usize;
@@ -193,7 +196,8 @@ impl Evaluator<'_> {
         let mut all = Matrix::IDENTITY;
         for node in self.scene.self_and_ancestors(id) {
             all = all.then(&self.local(node, frame));
-            if !self.scene.switch_or(node, names::INHERITS, true) {
+            let is_transform = !is_shape(self.scene.kind(node));
+            if is_transform && !self.scene.switch_or(node, names::INHERITS, true) {
                 break;
             }
         }

@@ -8,7 +8,7 @@ use nucleus_graph::attributes::{self, NodeType};
 use nucleus_graph::graph::is_a_name;
 
 use crate::omissions::{Cause, Omissions};
-use crate::scene::{MayaScene, NodeId};
+use crate::scene::{MayaScene, NodeId, is_shape};
 
 /// `fileInfo` key of files that this crate writes: their values are taken as they are.
 pub(crate) const OWN_FILE: &str = "nucleusScene";
@@ -100,10 +100,8 @@ impl KeptNodes {
         order.sort_by_key(|id| (scene.kind(*id).starts_with('n'), *id));
         let mut entries: Vec<(NodeId, Option<NodeId>)> = Vec::new();
         for id in order {
-            let kind = scene.kind(id);
-            let is_shape =
-                matches!(kind, "mesh" | "nCloth" | "nRigid" | "nParticle" | "dynamicConstraint" | "camera");
-            let transform = scene.node(id).parent.filter(|parent| is_shape && taken.insert(*parent));
+            let below = scene.node(id).parent.filter(|_| is_shape(scene.kind(id)));
+            let transform = below.filter(|parent| taken.insert(*parent));
             entries.push((id, transform));
         }
         let mut ancestors: BTreeSet<NodeId> = BTreeSet::new();

@@ -10,7 +10,7 @@ use nucleus_graph::graph::{Channel, NodeId as OwnId, Setting};
 
 use crate::animation::{Evaluator, Matrix, keys_at_every_frame, names};
 use crate::omissions::Cause;
-use crate::scene::NodeId;
+use crate::scene::{NodeId, is_shape};
 
 use super::attributes::of_channel;
 use super::importer::Importer;
@@ -53,6 +53,11 @@ impl Importer<'_> {
     /// Places our node as the transform, or the node with a transform of its own, is in Maya.
     pub(super) fn place(&mut self, from: NodeId, to: OwnId) {
         let scene = self.scene;
+        if is_shape(scene.kind(from)) {
+            // A further shape of a transform.
+            self.hang(to, self.placed_parent(from));
+            return;
+        }
         let start = self.frames[0] as f64;
         let parts = self.parts(from);
         let inherits = scene.switch_or(from, names::INHERITS, true);

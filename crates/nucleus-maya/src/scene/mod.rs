@@ -21,4 +21,5 @@ pub use attributes::{ANY, Names, Set, Vector3};
 pub(crate) use reference::locate;
 
 pub use graph::{Assigned, MayaNode, MayaScene, NodeId, PlugRef, Wire};
+pub(crate) use units::is_shape;
 pub use units::{Quantity, Units};

@@ -17,6 +17,25 @@ impl Default for Units {
     }
 }
 
+/// Whether a node is the shape below a transform, which has no placement of its own.
+pub(crate) fn is_shape(kind: &str) -> bool {
+    const SHAPES: [&str; 12] = [
+        "mesh",
+        "nCloth",
+        "nRigid",
+        "nParticle",
+        "particle",
+        "dynamicConstraint",
+        "camera",
+        "locator",
+        "hairSystem",
+        "nurbsCurve",
+        "nurbsSurface",
+        "follicle",
+    ];
+    SHAPES.contains(&kind)
+}
+
 /// What an attribute measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
@@ -34,10 +53,11 @@ impl Quantity {
     /// That of an attribute of a node of a type, or of a component of it.
     pub fn of(kind: &str, name: &str) -> Self {
         match (kind, name) {
+            (kind, name) if is_shape(kind) => Self::of_shape(kind, name),
             ("pointEmitter", "max" | "maxDistance" | "min" | "minDistance" | "vsr" | "sectionRadius") => {
                 Self::Length
             }
-            ("pointEmitter", "vsw" | "volumeSweep") | ("nCloth", "reae" | "restitutionAngle") => Self::Angle,
+            ("pointEmitter", "vsw" | "volumeSweep") => Self::Angle,
             // The same names are other attributes on nodes of construction history.
             (kind, _) if kind.starts_with("poly") => Self::Number,
             ("time", _) => Self::Time,
@@ -60,6 +80,14 @@ impl Quantity {
             ([.., b'L'], "o" | "output") => Self::Length,
             ([.., b'A'], "o" | "output") => Self::Angle,
             ([.., b'T'], "o" | "output") | ([.., b'T', _], "i" | "input") => Self::Time,
+            _ => Self::Number,
+        }
+    }
+
+    /// Shapes have short names of transforms for other attributes: `ra` of an nParticle is its radius.
+    fn of_shape(kind: &str, name: &str) -> Self {
+        match (kind, name) {
+            ("nCloth", "reae" | "restitutionAngle") => Self::Angle,
             _ => Self::Number,
         }
     }

@@ -4,6 +4,7 @@ mod constraints;
 mod deformers;
 mod events;
 mod histories;
+mod unknown;
 
 use std::collections::BTreeMap;
 use std::path::Path;
