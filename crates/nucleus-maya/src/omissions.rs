@@ -14,6 +14,8 @@ pub enum Cause {
     Command,
     /// A unit that is not known.
     Unit,
+    /// A unit of time whose frames are longer than a scene allows.
+    FrameRate,
     /// A referenced file that is not there.
     NoFile,
     /// A file that refers to itself.
@@ -69,6 +71,9 @@ impl Cause {
             Self::Cut => "the file ends inside this statement: it was cut off".to_owned(),
             Self::Command => "this command is not carried out; nothing in a scene is".to_owned(),
             Self::Unit => "the unit is not known".to_owned(),
+            Self::FrameRate => {
+                "a frame in this unit is longer than the 1000 s that a scene allows".to_owned()
+            }
             Self::NoFile => "the referenced file is not there".to_owned(),
             Self::Recursion => "the file refers to itself".to_owned(),
             Self::Unreadable(why) => format!("the referenced file cannot be read: {why}"),
@@ -102,6 +107,9 @@ impl Cause {
             Self::Cut => "everything after it is missing",
             Self::Command | Self::Unused(_) | Self::EmptyNucleus => "none on the simulation",
             Self::Unit => "the unit stays Maya's default",
+            Self::FrameRate => {
+                "the scene is refused until `fps` is a rate; or save it with frames as the unit of time in Maya"
+            }
             Self::NoFile | Self::Recursion | Self::Unreadable(_) => "its nodes are missing",
             Self::EditOfMissing => "the edit is left out",
             Self::Instance(_) => "the first instance stands for it, at its own place",

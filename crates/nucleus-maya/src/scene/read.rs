@@ -328,6 +328,9 @@ impl Reader<'_> {
         if is_main {
             self.scene.units = *units;
         }
+        if let Some(name) = arguments.get("t").filter(|_| !units.has_a_frame_rate()) {
+            self.scene.omissions.add(name.text().into_owned(), Cause::FrameRate);
+        }
         for name in unknown.into_iter().flatten() {
             self.scene.omissions.add(name, Cause::Unit);
         }

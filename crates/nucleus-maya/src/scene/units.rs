@@ -184,6 +184,8 @@ impl Units {
         let named = RATES.iter().find(|(known, _)| *known == name).map(|(_, fps)| *fps);
         let number = || name.strip_suffix("fps").and_then(|number| number.parse::<f64>().ok());
         let other = || match name {
+            // Drop frames change the numbers of a time code, not the rate.
+            "29.97df" => Some(29.97),
             "sec" => Some(1.0),
             "min" => Some(1.0 / 60.0),
             "hour" => Some(1.0 / 3600.0),
@@ -197,6 +199,11 @@ impl Units {
             }
             None => false,
         }
+    }
+
+    /// Whether a scene can have this frame rate.
+    pub(crate) fn has_a_frame_rate(&self) -> bool {
+        (1e-3..=1e6).contains(&self.fps)
     }
 
     /// Maya's name of a frame rate.

@@ -1,6 +1,7 @@
 //! Units, attributes and expressions that an import cannot take over, and attributes of shapes.
 
 use nucleus_graph::attributes::n_particle;
+use nucleus_graph::scene::read_scene_text;
 
 use super::{Read, near, read};
 
@@ -23,4 +24,33 @@ fn a_radius_of_particles_turns_nothing() {
     let places = node.get(&n_particle::POSITION0);
     near(places[0], [0.0, 10.0, 0.0]);
     near(places[1], [0.0, 0.0, 10.0]);
+}
+
+#[test]
+fn every_frame_rate_of_maya_is_known() {
+    let rates = [
+        ("29.97df", 29.97),
+        ("29.97fps", 29.97),
+        ("23.976fps", 23.976),
+        ("47.952fps", 47.952),
+        ("59.94fps", 59.94),
+        ("119.88fps", 119.88),
+        ("44100fps", 44100.0),
+        ("48000fps", 48000.0),
+        ("min", 1.0 / 60.0),
+        ("millisec", 1000.0),
+    ];
+    for (name, fps) in rates {
+        let read = particles(&format!("currentUnit -l centimeter -a degree -t {name};"), "");
+        assert_eq!(read.imported.scene.time.fps, fps, "{name}");
+        assert!(read.imported.omissions.is_empty(), "{}", read.imported.omissions);
+        assert!(read_scene_text(&read.text(), "a.ron".as_ref()).is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn an_hour_as_the_unit_of_time_is_listed_with_its_effect() {
+    let read = particles("currentUnit -t hour;", "");
+    let text = read.imported.omissions.to_string();
+    assert!(text.contains("`hour`") && text.contains("1000 s") && text.contains("refused"), "{text}");
 }
