@@ -44,6 +44,10 @@ pub enum Cause {
     Value(String),
     /// Attributes that the simulation has no use for.
     Unused(String),
+    /// Attributes that are in no table.
+    Unknown(String),
+    /// An expression that Maya runs for each particle.
+    ParticleExpression,
     /// An attribute that another node drives in a way that is not read; its type.
     Driven(String),
     /// An expression that cannot be translated, and why.
@@ -92,6 +96,8 @@ impl Cause {
                 why.clone()
             }
             Self::Unused(names) => format!("the simulation has no use for {names}"),
+            Self::Unknown(names) => format!("these attributes are unknown: {names}"),
+            Self::ParticleExpression => "Maya's expressions of particles are not run".to_owned(),
             Self::Driven(kind) => format!("it is driven by a {kind}, which is not read"),
             Self::Expression(why) => format!("the expression cannot be translated: {why}"),
             Self::Connection(why) => format!("the connection is refused: {why}"),
@@ -109,6 +115,10 @@ impl Cause {
             Self::Unit => "the unit stays Maya's default",
             Self::FrameRate => {
                 "the scene is refused until `fps` is a rate; or save it with frames as the unit of time in Maya"
+            }
+            Self::Unknown(_) => "they are left out; the result differs if Maya's depends on them",
+            Self::ParticleExpression => {
+                "it is left out; write it as `creationExpression` or `runtimeExpression` of the nParticle"
             }
             Self::NoFile | Self::Recursion | Self::Unreadable(_) => "its nodes are missing",
             Self::EditOfMissing => "the edit is left out",

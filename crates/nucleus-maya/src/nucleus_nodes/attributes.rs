@@ -110,13 +110,37 @@ impl Importer<'_> {
             };
             self.set(to, row, Setting::Fixed(Value::Painting(painting)));
         }
-        if !unknown.is_empty() && !self.is_own {
-            let count = unknown.len();
-            let mut names = unknown.into_iter().take(12).collect::<Vec<_>>().join(", ");
-            if count > 12 {
-                names += &format!(" and {} more", count - 12);
+        if !self.is_own {
+            self.report_others(from, &unknown);
+        }
+    }
+
+    /// Lists attributes without a row: those that a user has added, which no solver reads, and those that are not known.
+    fn report_others(&mut self, from: NodeId, names: &BTreeSet<&str>) {
+        let scene = self.scene;
+        let is_added = |name: &str| {
+            scene.node(from).added.iter().any(|(long, short)| **long == *name || **short == *name)
+        };
+        let (added, unknown): (Vec<&str>, Vec<&str>) = names.iter().partition(|name| is_added(name));
+        for (names, cause) in [(added, Cause::Unused as fn(String) -> Cause), (unknown, Cause::Unknown)] {
+            if !names.is_empty() {
+                self.omissions.add(scene.name(from), cause(first_names(&names)));
             }
-            self.omissions.add(scene.name(from), Cause::Unused(names));
+        }
+    }
+
+    /// Lists the expressions that Maya runs for each particle, which are no values.
+    pub(super) fn report_expressions(&mut self, from: NodeId, to: OwnId) {
+        let rows = [
+            &particle::INTERNAL_CREATION_EXPRESSION.row,
+            &particle::INTERNAL_RUNTIME_BEFORE_DYNAMICS_EXPRESSION.row,
+            &particle::INTERNAL_RUNTIME_AFTER_DYNAMICS_EXPRESSION.row,
+        ];
+        for row in rows {
+            if self.graph.unset(to, row) {
+                let what = format!("{}.{}", self.scene.name(from), row.name);
+                self.omissions.add(what, Cause::ParticleExpression);
+            }
         }
     }
 
@@ -326,6 +350,16 @@ impl Importer<'_> {
             }
         }
     }
+}
+
+/// The first twelve names of a list, and how many follow.
+fn first_names(names: &[&str]) -> String {
+    const MOST: usize = 12;
+    let mut text = names.iter().take(MOST).copied().collect::<Vec<_>>().join(", ");
+    if names.len() > MOST {
+        text += &format!(" and {} more", names.len() - MOST);
+    }
+    text
 }
 
 /// A channel as the setting of a row.

@@ -145,6 +145,7 @@ impl<'s> Importer<'s> {
         if node_type.is_a(&n_particle::N_PARTICLE) && !self.is_own {
             self.place_particles(kept.node, id);
             self.set_events(kept.node, id);
+            self.report_expressions(kept.node, id);
         }
         Ok(())
     }
@@ -269,9 +270,11 @@ impl<'s> Importer<'s> {
         let before = self.omissions.clone();
         self.set_values(from, to, node_type);
         let noted = std::mem::replace(&mut self.omissions, before);
-        noted.iter().filter(|(_, cause)| !matches!(cause, Cause::Unused(_))).for_each(|(what, cause)| {
-            self.omissions.add(what, cause.clone());
-        });
+        noted.iter().filter(|(_, cause)| !matches!(cause, Cause::Unused(_) | Cause::Unknown(_))).for_each(
+            |(what, cause)| {
+                self.omissions.add(what, cause.clone());
+            },
+        );
     }
 
     /// The film back is one attribute of two numbers in a file.

@@ -54,3 +54,27 @@ fn an_hour_as_the_unit_of_time_is_listed_with_its_effect() {
     let text = read.imported.omissions.to_string();
     assert!(text.contains("`hour`") && text.contains("1000 s") && text.contains("refused"), "{text}");
 }
+
+#[test]
+fn an_unknown_attribute_is_told_from_one_that_a_user_has_added() {
+    let added = "addAttr -ci true -sn \"mood\" -ln \"moodOfShot\" -at \"double\";\nsetAttr \".mood\" 3;";
+    let read = particles("", &format!("{added}\nsetAttr \".whirl\" 2;"));
+    let text = read.imported.omissions.to_string();
+    assert!(text.contains("`pShape`: the simulation has no use for mood; effect: none"), "{text}");
+    assert!(
+        text.contains("`pShape`: these attributes are unknown: whirl; effect: they are left out"),
+        "{text}"
+    );
+}
+
+#[test]
+fn expressions_of_particles_are_listed_and_not_copied() {
+    let values = "setAttr \".irbx\" -type \"string\" \"\";\n\
+                  setAttr \".irax\" -type \"string\" \"pShape.velocity += <<0,1,0>>;\";\n\
+                  setAttr \".icx\" -type \"string\" \"pShape.lifespanPP = rand(1,2);\";";
+    let read = particles("", values);
+    assert!(!read.text().contains("Expression"), "{}", read.text());
+    assert!(read.omits("internalCreationExpression", "are not run"));
+    assert!(read.omits("internalRuntimeAfterDynamicsExpression", "are not run"));
+    assert_eq!(read.imported.omissions.len(), 2, "{}", read.imported.omissions);
+}
