@@ -6,8 +6,9 @@ use nucleus_graph::scene::{Record, Scene, Source, TimeSpan, read_scene_text, wri
 
 use crate::ascii::{ImportError, SourceText};
 use crate::nucleus_nodes::{BorrowedOptions, ImportOptions, Importer, OWN_FILE};
-use crate::omissions::Omissions;
+use crate::omissions::{Cause, Omissions};
 use crate::scene::MayaScene;
+use crate::value_files;
 
 /// An imported scene.
 #[derive(Debug)]
@@ -74,15 +75,21 @@ pub fn import_text(
     let importer = Importer::new(&maya, own.is_some(), options);
     let carried = importer.check_given().and_then(|()| importer.run()).map_err(refused)?;
     omissions.extend(carried.omissions);
+    let mut graph = carried.graph;
+    if own.is_some() {
+        for (what, file) in value_files::follow(&mut graph, &value_files::Move::between(&path, ron)) {
+            omissions.add(what, Cause::NoValueFile(file));
+        }
+    }
     let [start, end] = carried.frames;
     let source = Source::new(ron);
     let scene = match head {
-        Some(head) => Scene { graph: carried.graph, source, ..head },
+        Some(head) => Scene { graph, source, ..head },
         None => Scene {
             time: TimeSpan { start, end, fps: maya.units.fps },
             every: 1.0,
             record: Record::Frames,
-            graph: carried.graph,
+            graph,
             checks: Vec::new(),
             source,
         },

@@ -17,6 +17,7 @@
 //! | the mesh of a shape: construction history              | `history.rs`                  |
 //! | curves, expressions, transforms                        | [`animation`]                 |
 //! | blend shapes, skin clusters                            | `deform/`                     |
+//! | paths of value files of a scene that moves             | [`value_files`]               |
 //! | which attributes and connections are carried over      | `nucleus_nodes/`              |
 //!
 //! **Invariant:** nothing in a file is executed, and a path in a file never leads to writing. Everything that is not
@@ -35,6 +36,7 @@ mod nucleus_nodes;
 pub mod omissions;
 mod preset;
 pub mod scene;
+pub mod value_files;
 mod write;
 
 pub use ascii::ImportError;

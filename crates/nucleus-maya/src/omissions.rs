@@ -40,6 +40,8 @@ pub enum Cause {
     Skinning,
     /// A mesh file of a Nucleus scene that is not beside the new scene.
     NoMeshFile(String),
+    /// A file of values or a texture that a Nucleus scene names, and that is not there.
+    NoValueFile(String),
     /// An attribute whose value does not fit, and why.
     Value(String),
     /// Attributes that the simulation has no use for.
@@ -92,6 +94,9 @@ impl Cause {
             Self::Operator(kind) => format!("{kind} is not carried out"),
             Self::Skinning => "skinning by dual quaternions is carried out linearly".to_owned(),
             Self::NoMeshFile(file) => format!("`{file}` is not there: the mesh in the Maya scene is used"),
+            Self::NoValueFile(file) => {
+                format!("`{file}` is neither beside the Maya scene nor beside the new one")
+            }
             Self::Value(why) | Self::Component(why) | Self::Approximate(why) | Self::Motion(why) => {
                 why.clone()
             }
@@ -131,6 +136,7 @@ impl Cause {
             }
             Self::Skinning => "the mesh is thinner where joints twist or bend far",
             Self::NoMeshFile(_) => "the mesh stands still, with its points at the first frame",
+            Self::NoValueFile(_) => "the scene is refused until the file is there",
             Self::Value(_) => "the attribute keeps its default, or the nearest valid value",
             Self::Driven(_) | Self::Expression(_) => "it keeps the value stored in the file",
             Self::Approximate(_) => "small differences",

@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::PossibleValue;
 use nucleus_cache::{Playback, atomic_file, shell_word};
 use nucleus_interop::{Format, Request, Selection, export};
-use nucleus_maya::maya_ascii;
+use nucleus_maya::{maya_ascii, value_files};
 
 use crate::options::{self, FrameRange};
 use crate::process::Outcome;
@@ -189,7 +189,7 @@ impl Export {
                 named.display()
             );
         }
-        let Some((scene, ..)) = files::open_scene(&self.file, None)?.report()? else {
+        let Some((mut scene, ..)) = files::open_scene(&self.file, None)?.report()? else {
             return Ok(Outcome::InvalidInput);
         };
         let stem = self.file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
@@ -198,6 +198,7 @@ impl Export {
         if out.exists() && (!self.force || out.is_dir()) {
             bail!("`{}` exists; replace it with `--force`", out.display());
         }
+        value_files::follow(&mut scene.graph, &value_files::Move::between(&self.file, &out));
         let (text, omissions) = maya_ascii(&scene, &stem).map_err(|message| anyhow!(message))?;
         atomic_file::write(&out, text.as_bytes())
             .with_context(|| format!("cannot write `{}`", out.display()))?;

@@ -110,3 +110,32 @@ fn a_mesh_whose_name_nothing_has_is_refused() {
     assert_refused(&output, "`--mesh pPlane=...` names no mesh that is needed; there is `pPlane1`");
     assert!(!folder.path().join("drape.ron").exists());
 }
+
+#[test]
+fn files_of_values_are_found_from_the_folder_of_an_exported_and_of_an_imported_scene() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["scenes", "meshes", "out/maya", "elsewhere"] {
+        fs::create_dir_all(at(name)).unwrap();
+    }
+    fs::write(at("meshes/beads.obj"), "v 0 1 0\nv 0 3 0\n").unwrap();
+    let scene = r#"Scene(time: (start: 1, end: 3, fps: 24), nodes: {"n": nucleus(),
+        "p": nParticle(position0: file("../meshes/beads.obj"), velocity0: file("../meshes/beads.obj"))})"#;
+    fs::write(at("scenes/beads.ron"), scene).unwrap();
+    let run = |arguments: &[&str]| {
+        let output = nucleus(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    };
+    run(&["export", "scenes/beads.ron", "--as", "ma", "-o", "out/maya/beads.ma"]);
+    assert!(read(folder.path(), "out/maya/beads.ma").contains("file:../../meshes/beads.obj"));
+    run(&["import", "out/maya/beads.ma", "-o", "elsewhere/beads.ron"]);
+    let text = read(folder.path(), "elsewhere/beads.ron");
+    assert_eq!(text.matches("file(\"../meshes/beads.obj\")").count(), 2, "{text}");
+    run(&["import", "out/maya/beads.ma", "-o", "beads.ron"]);
+    assert!(read(folder.path(), "beads.ron").contains("file(\"meshes/beads.obj\")"));
+    // A file that is in no place is named, with its effect.
+    fs::remove_file(at("meshes/beads.obj")).unwrap();
+    let lost = nucleus(folder.path(), &["import", "out/maya/beads.ma", "-o", "lost/beads.ron"]);
+    let said = stdout(&lost);
+    assert!(said.contains("`p.position0`: `../../meshes/beads.obj` is neither beside"), "{said}");
+}
