@@ -212,6 +212,17 @@ impl Checks {
     }
 }
 
+/// Variables of the expressions of particles, each with its meaning.
+const PARTICLE_VARIABLES: [(&str, &str); 7] = [
+    ("vx, vy, vz", "its velocity in scene units per second; may be assigned"),
+    ("lifespan", "the age in seconds at which it dies; may be assigned"),
+    ("x, y, z", "its place; may be assigned in `creationExpression`"),
+    ("age", "seconds since its birth"),
+    ("id", "its number, which no other particle has"),
+    ("time", "the time of the frame in seconds"),
+    ("rand, rand2, rand3", "random numbers from 0 to 1, new in every frame"),
+];
+
 /// Lists the variables, operators and functions of expressions: `thicknessPerVertex: expression("y > 1 ? 2 : 1")`.
 #[derive(Debug, Args)]
 pub struct Functions {}
@@ -228,6 +239,10 @@ impl Functions {
             Ok(())
         };
         section("Variables of a point", &mut paint::variables())?;
+        section(
+            "\nVariables of a particle, in `creationExpression` and `runtimeExpression`",
+            &mut PARTICLE_VARIABLES.into_iter(),
+        )?;
         section("\nOperators, the weakest first", &mut paint::operators())?;
         section("\nFunctions", &mut paint::functions())?;
         output::print(&text)?;

@@ -67,3 +67,25 @@ fn the_version_names_the_commit() {
     let is_checkout = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../.git")).exists();
     assert_eq!(commit.starts_with('(') && commit.ends_with(')'), is_checkout, "{said}");
 }
+
+#[test]
+fn every_listed_variable_of_a_particle_is_one() {
+    let folder = folder();
+    let said = stdout(&nucleus(folder.path(), &["functions"]));
+    let (_, list) = said.split_once("Variables of a particle").expect("the section");
+    let rows = list.lines().skip(1).take_while(|line| !line.is_empty());
+    let names: Vec<&str> = rows.flat_map(|row| row[..26].split(',').map(str::trim)).collect();
+    assert_eq!(names.len(), 13, "{said}");
+    let check = |names: &str| {
+        let expression = format!("vx = {names}");
+        let scene = format!(
+            "Scene(time: (start: 1, end: 9, fps: 24), nodes: {{\"n\": nucleus(), \"p\": nParticle(position0: [(0, 1, 0)], \
+             runtimeExpression: \"{expression}\")}})"
+        );
+        fs::write(folder.path().join("p.ron"), scene).expect("written");
+        nucleus(folder.path(), &["check", "p.ron"])
+    };
+    let output = check(&names.join(" + "));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_ne!(check("weight").status.code(), Some(0), "another name is none");
+}
