@@ -38,6 +38,8 @@ pub enum FrameRange {
     Count(i32),
     /// From one frame to another, both included.
     Span(i32, i32),
+    /// The same with all frames before it, from the first frame of the scene on.
+    Reaching(i32, i32),
 }
 
 impl FrameRange {
@@ -46,6 +48,23 @@ impl FrameRange {
         match self {
             Self::Count(count) => Some((start, start.checked_add(count - 1)?)),
             Self::Span(first, last) => Some((first, last)),
+            Self::Reaching(first, last) => Some((start.min(first), last)),
+        }
+    }
+
+    /// The frames that lead to a range are included too.
+    pub fn reached(self) -> Self {
+        match self {
+            Self::Span(first, last) => Self::Reaching(first, last),
+            other => other,
+        }
+    }
+
+    /// The first frame, where it is given.
+    pub fn first(self) -> Option<i64> {
+        match self {
+            Self::Count(_) => None,
+            Self::Span(first, _) | Self::Reaching(first, _) => Some(first.into()),
         }
     }
 }
@@ -256,6 +275,8 @@ mod tests {
     #[test]
     fn a_span_keeps_its_first_and_last_frame() {
         assert_eq!("-3..9".parse::<FrameRange>().unwrap().within(1), Some((-3, 9)));
+        let reaching = |text: &str| text.parse::<FrameRange>().unwrap().reached().within(1);
+        assert_eq!([reaching("30..40"), reaching("-3..9")], [Some((1, 40)), Some((-3, 9))]);
     }
 
     #[test]

@@ -47,8 +47,9 @@ const DEFAULT_ERROR: f64 = 0.01;
 pub struct Trade {
     /// The scene (.ron).
     scene: PathBuf,
-    /// Frames to compare: a count that includes the start frame (`48`) or a range (`10..58`); default: 1 second, and up to 4
-    /// where the cloth is stretched most later.
+    /// Frames to compare: a count that includes the start frame (`48`) or a range (`30..40`), before which every run
+    /// simulates the scene from its start, so a late range costs as much as all frames up to its end; default: 1 second, and
+    /// up to 4 where the cloth is stretched most later.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
     /// Recommend the cheapest setting with at most this error (`1%`) in every quantity.
@@ -151,7 +152,7 @@ impl Trade {
     /// Runs the settings that are not stored yet, and reports the recommendation.
     pub fn run(self) -> Result<Outcome> {
         let Some((scene, text)) = self.scene()? else { return Ok(Outcome::InvalidInput) };
-        let whole = match Benchmark::new(&scene) {
+        let whole = match self.benchmark(&scene) {
             Ok(whole) => whole,
             Err(error) => return problem(error),
         };
@@ -180,7 +181,16 @@ impl Trade {
     pub fn part(&self) -> Result<serde_json::Value> {
         let remote = self.part.as_ref().context("a run of a plan needs `--part`")?;
         let (scene, _) = self.scene()?.context("the scene has errors; the log lists them")?;
-        remote.report(&Benchmark::new(&scene)?)
+        remote.report(&self.benchmark(&scene)?)
+    }
+
+    /// The scene with its facts, compared over the frames that are asked for.
+    fn benchmark(&self, scene: &Scene) -> Result<Benchmark, TradeError> {
+        let whole = Benchmark::new(scene)?;
+        match self.frames.and_then(FrameRange::first) {
+            Some(first) => whole.comparing_from(first),
+            None => Ok(whole),
+        }
     }
 
     /// Refuses to do runs again whose results a folder holds already.
@@ -195,7 +205,7 @@ impl Trade {
 
     /// The scene with the frames that are asked for, and its text; `None` if it has errors, which are reported.
     fn scene(&self) -> Result<Option<(Scene, String)>> {
-        let file = files::open_scene(&self.scene, self.frames)?;
+        let file = files::open_scene(&self.scene, self.frames.map(FrameRange::reached))?;
         let file = if self.part.is_none() { file.with_first_frame() } else { file };
         Ok(file.report()?.map(|(scene, _, text)| (scene, text)))
     }

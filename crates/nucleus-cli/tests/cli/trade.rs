@@ -403,3 +403,29 @@ fn an_error_without_its_percent_sign_is_refused() {
         assert!(stderr(&output).contains("2 means 200 %: write `2%`"), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn a_range_of_frames_is_compared_after_the_frames_that_lead_to_it() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let sweep = |frames: &str| {
+        let arguments =
+            ["trade", "drape.ron", "--evaluations", "12", "--substeps", "1", "--frames", frames, "--json"];
+        let output = nucleus(folder.path(), &arguments);
+        let json: serde_json::Value = serde_json::from_str(&stdout(&output))
+            .unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
+        json
+    };
+    let (whole, late) = (sweep("1..12"), sweep("9..12"));
+    assert_eq!(
+        (&whole["frames"], &late["frames"]),
+        (&serde_json::json!([1, 12]), &serde_json::json!([8, 12]))
+    );
+    // The runs are the same, so they end with the same bits.
+    let hash = |json: &serde_json::Value| json["points"][0]["hash"].clone();
+    assert!(hash(&whole).is_string());
+    assert_eq!(hash(&late), hash(&whole));
+    // A frame of the range has the distance from the reference that it has in the whole.
+    let apart = |json: &serde_json::Value| json["apart"].as_array().unwrap().clone();
+    assert_eq!(apart(&late)[..], apart(&whole)[7..]);
+}

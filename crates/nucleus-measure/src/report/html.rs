@@ -50,7 +50,7 @@ pub fn html(page: &Page) -> String {
             title { (scene) ": speed against accuracy" }
             style { (PreEscaped(include_str!("style.css"))) }
             h1 { (scene) }
-            p.soft { "Speed against accuracy, frames " (start) " to " (end) "." }
+            p.soft { "Speed against accuracy, compared over frames " (start + 1) " to " (end) "." }
             (lead(page))
             (cards(page.trade))
             (pictures(page.pictures))

@@ -85,6 +85,8 @@ pub struct Benchmark {
     scene: Scene,
     own: Setting,
     program: Program,
+    /// Frames after the start that are simulated and not compared.
+    skipped: usize,
     cloths: Vec<SettableCloth>,
     /// The edges of each cloth.
     edges: Vec<Edges>,
@@ -127,6 +129,7 @@ impl Benchmark {
             scene: scene.clone(),
             own,
             program,
+            skipped: 0,
             cloths,
             edges,
             size,
@@ -135,6 +138,20 @@ impl Benchmark {
             is_closed,
             triangles,
         })
+    }
+
+    /// The same scene, compared from this frame on. Frames before it are simulated, since a cloth moves on from them.
+    ///
+    /// # Errors
+    /// When fewer frames than `FEWEST_FRAMES` are left.
+    pub fn comparing_from(mut self, frame: i64) -> Result<Self, TradeError> {
+        let span = self.program.time();
+        self.skipped = usize::try_from(frame.saturating_sub(span.start + 1)).unwrap_or(0);
+        let frames = span.end - span.start + 1 - self.skipped as i64;
+        if frames < FEWEST_FRAMES {
+            return Err(TradeError::TooFewFrames { frames });
+        }
+        Ok(self)
     }
 
     /// Energy of a fall of all cloth by its own size, in joules; 0 without gravity.
@@ -170,10 +187,26 @@ impl Benchmark {
         &self.program
     }
 
-    /// Number of solved frames: all but the first.
+    /// Number of compared frames: all but the first, or those from a later frame on.
     pub fn frames(&self) -> usize {
         let span = self.program.time();
-        usize::try_from(span.end - span.start).unwrap_or(0)
+        usize::try_from(span.end - span.start).unwrap_or(0).saturating_sub(self.skipped)
+    }
+
+    /// Number of frames that are simulated before the compared ones.
+    pub fn skipped(&self) -> usize {
+        self.skipped
+    }
+
+    /// The frame before the compared ones, and the last.
+    pub fn span(&self) -> [i64; 2] {
+        let span = self.program.time();
+        [span.start.saturating_add_unsigned(self.skipped as u64), span.end]
+    }
+
+    /// The skipped and the compared frames, which are part of the name of a run.
+    pub fn window(&self) -> [usize; 2] {
+        [self.skipped, self.frames()]
     }
 
     /// The program of the scene at another setting.

@@ -60,7 +60,7 @@ pub struct Point {
 pub struct Trade {
     /// Fingerprints of the scene and the solver: the name of the folder of results.
     pub name: String,
-    /// First and last frame.
+    /// The frame before the compared ones, and the last.
     pub frames: [i64; 2],
     /// The measured quantities, and the difference of the two references in each.
     pub measure: ErrorMeasure,
@@ -111,7 +111,7 @@ impl Point {
             pairs_unresolved: run.contact.pairs_unresolved,
             pairs: run.pairs as f64 / run.frames.len().max(1) as f64,
             queries: run.queries as f64 / run.frames.len().max(1) as f64,
-            first_nonfinite: (!run.is_finite()).then(|| run.frames.len() + 1),
+            first_nonfinite: (!run.is_finite()).then(|| run.skipped + run.frames.len() + 1),
             on_frontier: false,
             hash: run.hash.clone(),
         }
@@ -150,7 +150,6 @@ impl Trade {
             runs.iter().map(|run| Point::new(benchmark, run, &measure, references)).collect();
         points.sort_by(|a, b| a.ms.total_cmp(&b.ms));
         mark_frontier(&mut points);
-        let span = benchmark.program().time();
         // Nothing measures the finer reference itself.
         let reference = references.map(|both| Point {
             errors: Vec::new(),
@@ -160,7 +159,7 @@ impl Trade {
         });
         Self {
             name: benchmark.name(),
-            frames: [span.start, span.end],
+            frames: benchmark.span(),
             measure,
             divergence: references.map(|both| both.horizon.divergence.clone()).unwrap_or_default(),
             reference,

@@ -83,7 +83,7 @@ pub fn load(
     benchmark: &Benchmark,
     setting: &Setting,
 ) -> Result<Option<ReferenceRun>, ResultCacheError> {
-    let key = key(setting, 64, benchmark.frames());
+    let key = key(setting, 64, benchmark.window());
     let run = cache.list::<Run>(LIST)?.into_iter().find(|run| run.key() == key);
     let trajectory = cache.read(&format!("{key}.path"))?.and_then(|bytes| Trajectory::from_bytes(&bytes));
     let end = load_end(cache, &key)?;

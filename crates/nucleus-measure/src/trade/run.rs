@@ -38,6 +38,9 @@ pub struct Run {
     pub setting: Setting,
     /// Floating-point width in bits: 32, or 64 for references.
     pub bits: u32,
+    /// Frames that were simulated before the compared ones.
+    #[serde(default)]
+    pub skipped: usize,
     /// Requested frames.
     pub asked: usize,
     /// All frames without the start; fewer than requested if one was not finite.
@@ -74,13 +77,14 @@ impl Run {
 
     /// Unique name among the runs of a scene.
     pub fn key(&self) -> String {
-        key(&self.setting, self.bits, self.asked)
+        key(&self.setting, self.bits, [self.skipped, self.asked])
     }
 }
 
-/// Unique name of a run among the runs of a scene.
-pub fn key(setting: &Setting, bits: u32, frames: usize) -> String {
-    format!("{}-f{bits}-n{frames}", setting.key())
+/// Unique name of a run among the runs of a scene: by its setting, and by its skipped and its compared frames.
+pub fn key(setting: &Setting, bits: u32, [skipped, frames]: [usize; 2]) -> String {
+    let after = if skipped == 0 { String::new() } else { format!("-a{skipped}") };
+    format!("{}-f{bits}-n{frames}{after}", setting.key())
 }
 
 /// States that are kept of a run.
@@ -104,26 +108,30 @@ pub fn run_setting<R: Real>(
     let mut simulation: Simulation<R> = Simulation::new(program, 1);
     let bits = 8 * size_of::<R>() as u32;
     let mut points = Vec::new();
-    all_points(&simulation, &mut points);
     let potential_energy = |points: &[Vector3<f64>]| potential(&benchmark.masses, points, benchmark.gravity);
-    let asked = benchmark.frames();
+    let [skipped, asked] = benchmark.window();
+    all_points(&simulation, &mut points);
+    // Only references need all their frames.
+    let mut trajectory = (bits == 64).then(|| Trajectory::new(&points));
+    let mut contact = Contact::default();
+    let before = skip(&mut simulation, skipped, &mut contact, should_continue)?;
+    all_points(&simulation, &mut points);
     let mut run = Run {
         setting: *setting,
         bits,
+        skipped,
         asked,
         frames: Vec::with_capacity(asked),
-        start_energy: potential_energy(&points),
-        contact: Contact::default(),
+        start_energy: before.kinetic + potential_energy(&points),
+        contact,
         pairs: 0,
         queries: 0,
         outline: None,
         hash: String::new(),
         against: String::new(),
     };
-    // Only references need all their frames.
-    let mut trajectory = (bits == 64).then(|| Trajectory::new(&points));
     let mut expected = Vec::new();
-    for frame in 0..asked {
+    for frame in 0..if before.is_finite { asked } else { 0 } {
         if !should_continue() {
             return None;
         }
@@ -163,6 +171,34 @@ pub fn run_setting<R: Real>(
         object_positions(&simulation, object, out);
     }
     Some((run, RunStates { trajectory, end }))
+}
+
+/// The state before the compared frames.
+struct Before {
+    kinetic: f64,
+    is_finite: bool,
+}
+
+/// Simulates the frames before the compared ones. Returns `None` if `should_continue` returns false.
+fn skip<R: Real>(
+    simulation: &mut Simulation<R>,
+    frames: usize,
+    contact: &mut Contact,
+    should_continue: &dyn Fn() -> bool,
+) -> Option<Before> {
+    let mut before = Before { kinetic: 0.0, is_finite: true };
+    for _ in 0..frames {
+        if !should_continue() {
+            return None;
+        }
+        let report = simulation.advance(&mut ()).report;
+        contact.add(&report);
+        before = Before { kinetic: report.kinetic_energy, is_finite: report.finite };
+        if !report.finite {
+            break;
+        }
+    }
+    Some(before)
 }
 
 /// Replaces `out` by the points of all cloth in metres.

@@ -154,7 +154,7 @@ fn with_stored(
 ) -> Result<Vec<Run>, TradeError> {
     let (against, mut all) = (reference_key(references), runs.to_vec());
     for run in cache.list::<Run>(LIST)? {
-        let is_comparable = run.against == against && run.key() == key(&run.setting, 32, benchmark.frames());
+        let is_comparable = run.against == against && run.key() == key(&run.setting, 32, benchmark.window());
         if is_comparable && all.iter().all(|other| other.key() != run.key()) {
             all.push(run);
         }
@@ -180,10 +180,10 @@ fn run_settings(
     let known: Vec<Run> = cache.list(LIST)?;
     // A stored run holds its distances from the reference of its sweep, which may have been another.
     let against = reference_key(references);
-    let frames = benchmark.frames();
+    let window = benchmark.window();
     let mut tasks = Vec::new();
     for setting in settings {
-        let is_same = |run: &&Run| run.key() == key(setting, 32, frames) && run.against == against;
+        let is_same = |run: &&Run| run.key() == key(setting, 32, window) && run.against == against;
         match known.iter().find(is_same) {
             Some(run) => runs.push(run.clone()),
             None => tasks.push(task(benchmark, setting, 32)?),
@@ -227,7 +227,7 @@ pub fn end(
     benchmark: &Benchmark,
     setting: &Setting,
 ) -> Result<Option<Vec<Vec<[f32; 3]>>>, TradeError> {
-    Ok(reference::load_end(cache, &key(setting, 32, benchmark.frames()))?)
+    Ok(reference::load_end(cache, &key(setting, 32, benchmark.window()))?)
 }
 
 /// Two references, loaded or computed.
@@ -262,10 +262,10 @@ fn references(
 
 /// Rejects references that diverge, do not move, or do not converge.
 fn validate_references(benchmark: &Benchmark, references: &References) -> Result<(), TradeError> {
-    let span = benchmark.program().time();
+    let [start, end] = benchmark.span();
     for solved in [&references.coarse, &references.fine] {
         if !solved.run.is_finite() {
-            return Err(TradeError::ReferenceLost { frame: span.start + solved.run.frames.len() as i64 + 1 });
+            return Err(TradeError::ReferenceLost { frame: start + solved.run.frames.len() as i64 + 1 });
         }
     }
     let trajectory = &references.fine.trajectory;
@@ -276,7 +276,7 @@ fn validate_references(benchmark: &Benchmark, references: &References) -> Result
         crate::metrics::deformation::distance(&now, &first, benchmark.size).max > 1e-7
     });
     if !moves {
-        return Err(TradeError::NothingMoves { start: span.start, end: span.end });
+        return Err(TradeError::NothingMoves { start, end });
     }
     let measure = ErrorMeasure::new(benchmark, &references.coarse, &references.fine, &references.horizon);
     let uncertainty = measure.essential_floor().unwrap_or(0.0);
@@ -359,7 +359,8 @@ fn worker(
     sender: Sender<(Run, RunStates)>,
 ) {
     while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-        let each = (1e3 * task.work / benchmark.frames().max(1) as f64) as u64;
+        let frames = benchmark.skipped() + benchmark.frames();
+        let each = (1e3 * task.work / frames.max(1) as f64) as u64;
         let pulse = || {
             milli.fetch_add(each, Ordering::Relaxed);
             should_continue()

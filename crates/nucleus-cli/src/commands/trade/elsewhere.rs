@@ -137,8 +137,9 @@ impl RemoteSweep<'_> {
     /// The name of a run, and the arguments of `nucleus trade` for it.
     fn arguments(&self, remote: &Remote) -> Result<(String, Vec<String>)> {
         let scene = self.scene.to_str().ok_or_else(|| anyhow!("the path of the scene is not UTF-8"))?;
-        let time = self.subject.program().time();
-        let frames = format!("--frames={}..{}", time.start, time.end);
+        let [before, end] = self.subject.span();
+        let first = if self.subject.skipped() == 0 { before } else { before + 1 };
+        let frames = format!("--frames={first}..{end}");
         let part = format!("--part={}", serde_json::to_string(remote)?);
         let name = format!("{} ({} bits)", remote.run.setting, remote.run.bits);
         Ok((name, vec![scene.to_owned(), frames, part]))

@@ -154,7 +154,7 @@ fn arguments(wedge: &Wedge, scene: &str, columns: &[String], row: &Row) -> Vec<S
         "--frames",
         wedge.frames.map(|frames| match frames {
             FrameRange::Count(count) => count.to_string(),
-            FrameRange::Span(first, last) => format!("{first}..{last}"),
+            FrameRange::Span(first, last) | FrameRange::Reaching(first, last) => format!("{first}..{last}"),
         }),
     );
     option("--record", wedge.record.clone());
