@@ -8,9 +8,8 @@ use nucleus_graph::scene::{Scene, edit};
 use nucleus_measure::report;
 use nucleus_measure::result_cache::{ResultCache, write_atomic};
 use nucleus_measure::trade::SweepOptions;
-use nucleus_measure::trade::run::Trajectory;
 use nucleus_measure::trade::{
-    Benchmark, Choice, Progress, Quantity, Reading, RemoteRun, Request, Setting, Survey, SweepControl,
+    Benchmark, Choice, Progress, Quantity, Reading, RemoteStage, Request, Setting, Survey, SweepControl,
     SweepResult, TradeError, Wish, run_sweep,
 };
 
@@ -254,7 +253,7 @@ impl Trade {
     fn run_sweep(&self, subject: &Benchmark, store: &ResultCache) -> Result<SweepResult, TradeError> {
         let mut progress = SweepProgress::new();
         let remote = RemoteSweep { parts: &self.parts, jobs: self.jobs, scene: &self.scene, subject };
-        let mut elsewhere = |runs: &[RemoteRun], target: Option<&Trajectory>| remote.run(runs, target);
+        let mut elsewhere = |stage: &RemoteStage| remote.run(stage);
         let is_planned = self.parts.is_planned();
         let found = run_sweep(
             subject,

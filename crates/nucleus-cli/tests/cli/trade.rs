@@ -429,3 +429,47 @@ fn a_range_of_frames_is_compared_after_the_frames_that_lead_to_it() {
     let apart = |json: &serde_json::Value| json["apart"].as_array().unwrap().clone();
     assert_eq!(apart(&late)[..], apart(&whole)[7..]);
 }
+
+/// A sheet that swings down from two corners.
+const SWING: &str = r#"Scene(
+    time: (start: 1, end: 7, fps: 24),
+    nodes: {
+        "nucleus1": nucleus(spaceScale: 0.01),
+        "plane": polyPlane(width: 30, height: 30, subdivisions: (4, 4)),
+        "sheet": nCloth(inputMesh: "plane", selfCollide: false),
+        "pins": dynamicConstraint(constraintType: transform, components: ["sheet.corners"]),
+    },
+)
+"#;
+
+#[test]
+fn a_refined_sweep_as_runs_of_plans_has_the_rounds_the_references_and_the_bits_of_one_process() {
+    let (one, many) = (folder(), folder());
+    for folder in [&one, &many] {
+        fs::write(folder.path().join("drape.ron"), SWING).unwrap();
+    }
+    let plain = nucleus(one.path(), &["trade", "drape.ron"]);
+    let planned = nucleus(many.path(), &["trade", "drape.ron", "--plan", "p", "--jobs", "2"]);
+    assert_eq!([plain.status.code(), planned.status.code()], [Some(0); 2], "{}", stderr(&planned));
+    let rounds = ["references", "settings", "settings-1"];
+    for stage in rounds {
+        assert!(many.path().join("p").join(stage).join("plan.json").exists(), "{stage}");
+    }
+    let references = [&one, &many].map(|folder| kept_lines(folder.path(), "references.jsonl"));
+    assert_eq!(references, [2, 2], "no reference is finer than needed");
+    // Which settings the rounds add depends on times, which differ; what both have tried has the same bits.
+    let (ours, theirs) = (points(one.path()), points(many.path()));
+    assert_eq!(ours[ours.len() - 2..], theirs[theirs.len() - 2..], "the noise and the horizon");
+    let setting = |point: &serde_json::Value| point["setting"].clone();
+    let shared = ours.iter().filter(|point| point["setting"].is_object());
+    let shared = shared
+        .filter_map(|point| Some((point, theirs.iter().find(|other| setting(other) == setting(point))?)));
+    let shared: Vec<_> = shared.collect();
+    assert!(shared.len() >= 10, "{} of {} and {}", shared.len(), ours.len(), theirs.len());
+    assert!(shared.iter().all(|(ours, theirs)| ours == theirs));
+    // Finished stages are read, not done again, by a machine without the store.
+    fs::rename(many.path().join("kept"), many.path().join("gone")).unwrap();
+    let again = nucleus(many.path(), &["trade", "drape.ron", "--plan", "p", "--jobs", "2"]);
+    assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
+    assert_eq!(points(many.path()), theirs);
+}

@@ -31,4 +31,4 @@ pub use plan::SweepOptions;
 pub use reference::{ReferenceRun, References};
 pub use setting::{Reading, Setting};
 pub use survey::Survey;
-pub use sweep::{Elsewhere, Progress, RemoteRun, SweepControl, SweepResult, run_sweep};
+pub use sweep::{Elsewhere, Progress, RemoteRun, RemoteStage, SweepControl, SweepResult, run_sweep};

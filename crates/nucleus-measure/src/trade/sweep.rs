@@ -46,9 +46,20 @@ pub struct RemoteRun {
     pub bits: u32,
 }
 
-/// Does runs in other processes, measured against the given trajectory, and returns them in their order.
-pub type Elsewhere<'a> =
-    dyn FnMut(&[RemoteRun], Option<&Trajectory>) -> Result<Vec<(Run, RunStates)>, TradeError> + 'a;
+/// Runs that are done in other processes at once.
+pub struct RemoteStage<'a> {
+    /// How often the references were made finer.
+    pub finer: usize,
+    /// The round of settings: 0 for the first; `None` for references.
+    pub round: Option<u32>,
+    /// The runs.
+    pub runs: &'a [RemoteRun],
+    /// The reference that they are measured against: the name of its run, and its trajectory.
+    pub target: Option<(String, &'a Trajectory)>,
+}
+
+/// Does runs in other processes, and returns them in their order.
+pub type Elsewhere<'a> = dyn FnMut(&RemoteStage) -> Result<Vec<(Run, RunStates)>, TradeError> + 'a;
 
 /// Parallelism, progress and cancellation of a sweep.
 pub struct SweepControl<'a> {
@@ -102,9 +113,9 @@ pub fn run_sweep(
     mut control: SweepControl,
 ) -> Result<SweepResult, TradeError> {
     let settings = plan::settings(benchmark, options)?;
-    let mut done = Done { progress: Progress { done: 0.0, runs: [0, 0], kept: 0 }, before: 0.0, all: 0.0 };
-    // Runs in other processes are planned at once.
-    let is_refined = options.is_refined() && control.elsewhere.is_none();
+    let progress = Progress { done: 0.0, runs: [0, 0], kept: 0 };
+    let mut done = Done { progress, before: 0.0, all: 0.0, finer: 0, round: None };
+    let is_refined = options.is_refined();
     let mut finer = plan::finenesses(is_refined).iter().peekable();
     loop {
         let both = finer.next().and_then(|finer| plan::references(benchmark, &settings, *finer));
@@ -114,15 +125,18 @@ pub fn run_sweep(
         };
         if let Some(both) = &references {
             if finer.peek().is_some() && !resolves(benchmark, both, wish) {
+                done.make_finer();
                 continue;
             }
             validate_references(benchmark, both)?;
         }
         let mut runs = Vec::new();
+        done.round = Some(0);
         run_settings(benchmark, &settings, references.as_ref(), cache, &mut done, &mut control, &mut runs)?;
         let mut trade = Trade::new(benchmark, &runs, references.as_ref());
         for round in 0..if is_refined { REFINEMENTS } else { 0 } {
             let mut near = plan::near(&trade, wish, round);
+            done.round = Some(round + 1);
             near.retain(|setting| runs.iter().all(|run| run.setting.key() != setting.key()));
             run_settings(benchmark, &near, references.as_ref(), cache, &mut done, &mut control, &mut runs)?;
             trade = Trade::new(benchmark, &runs, references.as_ref());
@@ -130,6 +144,7 @@ pub fn run_sweep(
         // Finer references show no setting that is faster.
         let is_missed = matches!(wish, Wish::Error(_)) && !matches!(wish.choose(&trade), Choice::Found(_));
         if finer.peek().is_some() && references.is_some() && is_missed {
+            done.make_finer();
             continue;
         }
         let stored = with_stored(benchmark, &runs, references.as_ref(), cache)?;
@@ -192,7 +207,7 @@ fn run_settings(
     done.progress.kept += settings.len() - tasks.len();
     done.progress.runs[1] += tasks.len();
     done.all += tasks.iter().map(|task| task.work).sum::<f64>();
-    let target = references.map(|both| &both.fine.trajectory);
+    let target = references.map(|both| (against.clone(), &both.fine.trajectory));
     work_through(benchmark, tasks, target, done, control, &mut |run, kept| {
         let run = Run { against: against.clone(), ..run };
         reference::save_end(cache, &run.key(), &kept.end)?;
@@ -301,13 +316,23 @@ struct Done {
     /// Work of earlier rounds.
     before: f64,
     all: f64,
+    /// The stage, as in [`RemoteStage`].
+    finer: usize,
+    round: Option<u32>,
+}
+
+impl Done {
+    /// Goes on with finer references.
+    fn make_finer(&mut self) {
+        (self.finer, self.round) = (self.finer + 1, None);
+    }
 }
 
 /// Runs tasks in parallel, the longest first, and passes each result to `keep`.
 fn work_through(
     benchmark: &Benchmark,
     mut tasks: Vec<Task>,
-    target: Option<&Trajectory>,
+    target: Option<(String, &Trajectory)>,
     done: &mut Done,
     control: &mut SweepControl,
     keep: &mut dyn FnMut(Run, RunStates) -> Result<(), TradeError>,
@@ -315,9 +340,11 @@ fn work_through(
     tasks.sort_by(|a, b| b.work.total_cmp(&a.work));
     if let Some(elsewhere) = control.elsewhere.as_deref_mut().filter(|_| !tasks.is_empty()) {
         let asked = tasks.iter().map(|task| RemoteRun { setting: task.setting, bits: task.bits });
-        let done = elsewhere(&asked.collect::<Vec<_>>(), target)?;
+        let runs: Vec<RemoteRun> = asked.collect();
+        let done = elsewhere(&RemoteStage { finer: done.finer, round: done.round, runs: &runs, target })?;
         return done.into_iter().try_for_each(|(run, kept)| keep(run, kept));
     }
+    let target = target.map(|(_, trajectory)| trajectory);
     let (next, milli) = (AtomicUsize::new(0), AtomicU64::new(0));
     let (sender, receiver) = channel();
     let workers = control.workers.clamp(1, tasks.len().max(1));

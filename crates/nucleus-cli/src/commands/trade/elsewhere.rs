@@ -1,4 +1,5 @@
-//! The runs of a sweep as runs of plans: first the references, then the settings, which are measured against them.
+//! The runs of a sweep as runs of plans: the references, the settings, which are measured against them, and each round of
+//! settings near the best.
 //!
 //! States are too large for a result: they are files in the folder `states` of the plan, which all processes share.
 
@@ -6,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, ensure};
 use nucleus_measure::result_cache::ResultCache;
-use nucleus_measure::trade::run::{Run, RunStates, Trajectory};
-use nucleus_measure::trade::{Benchmark, RemoteRun, TradeError};
+use nucleus_measure::trade::run::{Run, RunStates, Trajectory, key};
+use nucleus_measure::trade::{Benchmark, RemoteRun, RemoteStage, TradeError};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -22,12 +23,18 @@ pub struct Remote {
     run: RemoteRun,
     /// Fingerprints of the scene and the solver.
     subject: String,
+    /// Its skipped and its compared frames.
+    window: [usize; 2],
+    /// The name of the reference that it is measured against; empty without one.
+    against: String,
     /// The folder of states.
     states: PathBuf,
 }
 
-/// The trajectory of the finer reference among the states.
-const TARGET: &str = "target.path";
+/// The name of the trajectory of a reference among the states.
+fn target_file(reference: &str) -> String {
+    format!("{reference}.target")
+}
 
 /// Reads a run from the text in a plan.
 pub fn remote(text: &str) -> Result<Remote, String> {
@@ -40,7 +47,7 @@ impl Remote {
     }
 
     fn files(&self) -> [String; 2] {
-        let key = format!("{}-f{}", self.run.setting.key(), self.run.bits);
+        let key = key(&self.run.setting, self.run.bits, self.window);
         [format!("{key}.path"), format!("{key}.end.json")]
     }
 
@@ -56,9 +63,14 @@ impl Remote {
             "the scene, a file that it reads, or this build of nucleus differs from those of the plan"
         );
         let cache = self.cache();
-        let target = match self.run.bits {
-            64 => None,
-            _ => cache.read(TARGET)?.as_deref().and_then(Trajectory::from_bytes),
+        let target = match self.against.as_str() {
+            "" => None,
+            reference => {
+                let bytes = cache.read(&target_file(reference))?;
+                let missing =
+                    || format!("the reference `{reference}` is missing in `{}`", cache.folder().display());
+                Some(bytes.as_deref().and_then(Trajectory::from_bytes).with_context(missing)?)
+            }
         };
         let program = subject.at(&self.run.setting)?;
         let done = self.run.run(subject, &program, target.as_ref(), &|| true);
@@ -97,41 +109,40 @@ pub struct RemoteSweep<'a> {
 impl RemoteSweep<'_> {
     /// Does runs as runs of a plan. References are not timed, and run side by side; settings are timed, so each runs alone on
     /// a machine.
-    pub fn run(
-        &self,
-        runs: &[RemoteRun],
-        target: Option<&Trajectory>,
-    ) -> Result<Vec<(Run, RunStates)>, TradeError> {
-        let done = self.planned(runs, target);
+    pub fn run(&self, stage: &RemoteStage) -> Result<Vec<(Run, RunStates)>, TradeError> {
+        let done = self.planned(stage);
         done.map_err(|error| TradeError::Elsewhere(format!("{error:#}")))?.ok_or(TradeError::Interrupted)
     }
 
-    fn planned(
-        &self,
-        runs: &[RemoteRun],
-        target: Option<&Trajectory>,
-    ) -> Result<Option<Vec<(Run, RunStates)>>> {
-        let is_timed = runs.iter().any(|run| run.bits != 64);
-        let stage = self.parts.stage(if is_timed { "settings" } else { "references" }, is_timed)?;
-        let states = self.parts.folder()?;
-        let remotes: Vec<Remote> = runs
-            .iter()
-            .map(|run| Remote { run: *run, subject: self.subject.name(), states: states.clone() })
-            .collect();
-        let jobs = match is_timed && stage.is_local() {
-            true => {
-                say!("settings are timed, so each runs alone, one after another");
-                Some(1)
-            }
-            false => self.jobs,
-        };
-        if let (Some(target), Some(first)) = (target, remotes.first()) {
-            first.cache().write(TARGET, &target.to_bytes())?;
+    fn planned(&self, sweep: &RemoteStage) -> Result<Option<Vec<(Run, RunStates)>>> {
+        let is_timed = sweep.round.is_some();
+        let stage = self.parts.stage(&folder_of(sweep), is_timed)?;
+        let remotes = self.remotes(sweep)?;
+        let jobs = if is_timed && stage.is_local() { Some(1) } else { self.jobs };
+        if is_timed && stage.is_local() && (sweep.finer, sweep.round) == (0, Some(0)) {
+            say!("settings are timed, so each runs alone, one after another");
+        }
+        if let (Some((_, trajectory)), Some(first)) = (&sweep.target, remotes.first()) {
+            first.cache().write(&target_file(&first.against), &trajectory.to_bytes())?;
         }
         let parts = remotes.iter().map(|remote| self.arguments(remote)).collect::<Result<_>>()?;
         let Some(found) = stage.execute::<Run>("trade", parts, jobs)? else { return Ok(None) };
         let with_states = remotes.iter().zip(found).map(|(remote, run)| Ok((run, remote.read()?)));
         with_states.collect::<Result<_>>().map(Some)
+    }
+
+    /// The runs of a stage as lines of a plan.
+    fn remotes(&self, sweep: &RemoteStage) -> Result<Vec<Remote>> {
+        let states = self.parts.folder()?;
+        let against = sweep.target.as_ref().map(|(name, _)| name.clone()).unwrap_or_default();
+        let remote = |run: &RemoteRun| Remote {
+            run: *run,
+            subject: self.subject.name(),
+            window: self.subject.window(),
+            against: against.clone(),
+            states: states.clone(),
+        };
+        Ok(sweep.runs.iter().map(remote).collect())
     }
 
     /// The name of a run, and the arguments of `nucleus trade` for it.
@@ -144,4 +155,14 @@ impl RemoteSweep<'_> {
         let name = format!("{} ({} bits)", remote.run.setting, remote.run.bits);
         Ok((name, vec![scene.to_owned(), frames, part]))
     }
+}
+
+/// The folder of a stage: `references`, `settings`, `settings-1`; with finer references `finer-settings`.
+fn folder_of(sweep: &RemoteStage) -> String {
+    let stage = match sweep.round {
+        None => "references".to_owned(),
+        Some(0) => "settings".to_owned(),
+        Some(round) => format!("settings-{round}"),
+    };
+    "finer-".repeat(sweep.finer) + &stage
 }
