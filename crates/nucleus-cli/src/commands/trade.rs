@@ -1,6 +1,6 @@
 //! `nucleus trade`: error against time of a scene's settings.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
@@ -59,9 +59,12 @@ pub struct Trade {
     /// Recommend the most accurate setting that takes at most this time per frame on one core (`30ms`).
     #[arg(long, value_parser = quality::time, conflicts_with_all = ["error", "position", "strain", "worst_strain", "shape", "silhouette", "energy"])]
     time: Option<f64>,
-    /// Write the recommended setting into the scene, or into another file. Comments are kept.
+    /// Write the recommended setting into the scene, or the scene with it to another file. Comments are kept.
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     apply: Option<Option<PathBuf>>,
+    /// Let `--apply` replace another file.
+    #[arg(long, requires = "apply")]
+    force: bool,
     /// Resistance models to try; default: that of the scene.
     #[arg(long, value_name = "MODEL")]
     resistance_model: Option<ResistanceModels>,
@@ -150,6 +153,7 @@ enum ResistanceModels {
 impl Trade {
     /// Runs the settings that are not stored yet, and reports the recommendation.
     pub fn run(self) -> Result<Outcome> {
+        self.refuse_other_file()?;
         let Some((scene, text)) = self.scene()? else { return Ok(Outcome::InvalidInput) };
         let whole = match self.benchmark(&scene) {
             Ok(whole) => whole,
@@ -190,6 +194,20 @@ impl Trade {
             Some(first) => whole.comparing_from(first),
             None => Ok(whole),
         }
+    }
+
+    /// Refuses to replace a file other than the scene, before the runs.
+    fn refuse_other_file(&self) -> Result<()> {
+        let Some(to) = self.apply.as_ref().and_then(Option::as_ref) else { return Ok(()) };
+        let is_free = !to.exists() || self.force && !to.is_dir() || self.is_scene(to);
+        ensure!(is_free, "`{}` exists; replace it with `--force`", to.display());
+        Ok(())
+    }
+
+    /// Whether a path is that of the scene.
+    fn is_scene(&self, path: &Path) -> bool {
+        let real = |path: &Path| path.canonicalize().ok();
+        real(path).is_some() && real(path) == real(&self.scene)
     }
 
     /// Refuses to do runs again whose results a folder holds already.
@@ -351,9 +369,13 @@ impl Trade {
     /// Writes the text of the scene with only the attributes of the setting changed.
     fn apply(&self, to: Option<&PathBuf>, subject: &Benchmark, setting: &Setting, text: &str) -> Result<()> {
         let edited = edit::edit(text, &subject.edits(setting))?;
-        let to = to.unwrap_or(&self.scene);
+        let (to, scene) = (to.unwrap_or(&self.scene), self.scene.display());
+        let replaced = if to.exists() { ", which it replaces" } else { "" };
         write_atomic(to, edited.as_bytes())?;
-        say!("`{}` now has {setting}", to.display());
+        match self.is_scene(to) {
+            true => say!("wrote {setting} into `{scene}`"),
+            false => say!("wrote `{scene}` with {setting} to `{}`{replaced}", to.display()),
+        }
         Ok(())
     }
 }

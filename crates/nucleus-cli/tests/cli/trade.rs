@@ -430,6 +430,36 @@ fn a_range_of_frames_is_compared_after_the_frames_that_lead_to_it() {
     assert_eq!(apart(&late)[..], apart(&whole)[7..]);
 }
 
+#[test]
+fn another_scene_is_replaced_by_apply_only_when_forced() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let other = folder.path().join("other.ron");
+    fs::write(&other, "Scene(nodes: {})").unwrap();
+    let apply = [&SMALL[..], &["--error", "50%", "--apply", "other.ron"]].concat();
+    let refused = nucleus(folder.path(), &apply);
+    assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
+    assert!(
+        stderr(&refused).contains("`other.ron` exists; replace it with `--force`"),
+        "{}",
+        stderr(&refused)
+    );
+    assert_eq!(fs::read_to_string(&other).unwrap(), "Scene(nodes: {})");
+    assert!(!folder.path().join("kept").exists(), "it is refused before the runs");
+    let forced = nucleus(folder.path(), &[&apply[..], &["--force"]].concat());
+    assert_eq!(forced.status.code(), Some(0), "{}", stderr(&forced));
+    let said = stderr(&forced);
+    assert!(
+        said.contains("wrote `drape.ron` with ") && said.contains(" to `other.ron`, which it replaces"),
+        "{said}"
+    );
+    assert!(fs::read_to_string(&other).unwrap().contains("cloth1"));
+    // The scene itself is what `--apply` is for, also by another path.
+    let own = nucleus(folder.path(), &[&SMALL[..], &["--error", "50%", "--apply", "./drape.ron"]].concat());
+    assert_eq!(own.status.code(), Some(0), "{}", stderr(&own));
+    assert!(stderr(&own).contains("into `drape.ron`"), "{}", stderr(&own));
+}
+
 /// A sheet that swings down from two corners.
 const SWING: &str = r#"Scene(
     time: (start: 1, end: 7, fps: 24),
