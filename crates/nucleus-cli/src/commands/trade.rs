@@ -348,11 +348,9 @@ impl Trade {
             }
             (None, _) => {}
         }
-        let is_requested = self.error.is_some() || self.time.is_some() || !self.bounds.list().is_empty();
         Ok(match choice {
             Choice::Found(_) => Outcome::Success,
-            Choice::Nearest(_) | Choice::Unresolved(_) if !is_requested => Outcome::Success,
-            _ => Outcome::Problem,
+            Choice::Nearest(_) | Choice::Unresolved(_) | Choice::None => Outcome::Problem,
         })
     }
 

@@ -179,6 +179,8 @@ fn an_interrupted_sweep_continues_with_its_stored_runs() {
         "48",
         "--evaluations",
         &evaluations,
+        "--error",
+        "1000%",
     ];
     let mut command = Command::new(env!("CARGO_BIN_EXE_nucleus"));
     command.env("NUCLEUS_CACHE", folder.path().join("kept")).args(sweep).current_dir(folder.path());
@@ -271,6 +273,22 @@ fn an_error_or_time_that_no_setting_reaches_exits_with_1_and_the_nearest() {
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         assert!(stdout(&output).contains(words), "{}", stdout(&output));
     }
+}
+
+#[test]
+fn a_sweep_without_a_recommendation_exits_with_1_whatever_was_asked() {
+    let folder = folder();
+    fs::write(folder.path().join("drape.ron"), SWING).unwrap();
+    let sweep = ["trade", "drape.ron", "--evaluations", "1", "--substeps", "1"];
+    let output = nucleus(folder.path(), &[&sweep[..], &["--json"]].concat());
+    let json: serde_json::Value =
+        serde_json::from_str(&stdout(&output)).unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
+    assert_ne!(json["recommendation"]["choice"], "found");
+    assert_eq!(output.status.code(), Some(1));
+    let said = stdout(&nucleus(folder.path(), &sweep));
+    assert!(!said.contains("within their noise"), "{said}");
+    let met = nucleus(folder.path(), &[&sweep[..], &["--error", "1000%"]].concat());
+    assert_eq!(met.status.code(), Some(0), "{}", stdout(&met));
 }
 
 #[test]

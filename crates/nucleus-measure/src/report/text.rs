@@ -89,7 +89,7 @@ pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
             lines
         }
         Choice::Unresolved(point) => vec![format!(
-            "the references do not resolve {wanted}; the most accurate setting within their noise: {}",
+            "the references do not resolve {wanted}; the most accurate setting measured: {}",
             costs(point)
         )],
         Choice::None => {
