@@ -423,32 +423,6 @@ fn an_error_without_its_percent_sign_is_refused() {
 }
 
 #[test]
-fn a_range_of_frames_is_compared_after_the_frames_that_lead_to_it() {
-    let folder = folder();
-    scene(folder.path(), 24, "");
-    let sweep = |frames: &str| {
-        let arguments =
-            ["trade", "drape.ron", "--evaluations", "12", "--substeps", "1", "--frames", frames, "--json"];
-        let output = nucleus(folder.path(), &arguments);
-        let json: serde_json::Value = serde_json::from_str(&stdout(&output))
-            .unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
-        json
-    };
-    let (whole, late) = (sweep("1..12"), sweep("9..12"));
-    assert_eq!(
-        (&whole["frames"], &late["frames"]),
-        (&serde_json::json!([1, 12]), &serde_json::json!([8, 12]))
-    );
-    // The runs are the same, so they end with the same bits.
-    let hash = |json: &serde_json::Value| json["points"][0]["hash"].clone();
-    assert!(hash(&whole).is_string());
-    assert_eq!(hash(&late), hash(&whole));
-    // A frame of the range has the distance from the reference that it has in the whole.
-    let apart = |json: &serde_json::Value| json["apart"].as_array().unwrap().clone();
-    assert_eq!(apart(&late)[..], apart(&whole)[7..]);
-}
-
-#[test]
 fn another_scene_is_replaced_by_apply_only_when_forced() {
     let folder = folder();
     scene(folder.path(), 24, "");
@@ -520,4 +494,46 @@ fn a_refined_sweep_as_runs_of_plans_has_the_rounds_the_references_and_the_bits_o
     let again = nucleus(many.path(), &["trade", "drape.ron", "--plan", "p", "--jobs", "2"]);
     assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
     assert_eq!(points(many.path()), theirs);
+}
+
+#[test]
+fn a_range_of_frames_is_compared_after_the_frames_that_lead_to_it() {
+    let folder = folder();
+    scene(folder.path(), 24, "");
+    let sweep = |frames: &str| {
+        let arguments =
+            ["trade", "drape.ron", "--evaluations", "12", "--substeps", "1", "--frames", frames, "--json"];
+        let output = nucleus(folder.path(), &arguments);
+        let json: serde_json::Value = serde_json::from_str(&stdout(&output))
+            .unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
+        json
+    };
+    let (whole, late) = (sweep("1..12"), sweep("9..12"));
+    assert_eq!(
+        (&whole["frames"], &late["frames"]),
+        (&serde_json::json!([1, 12]), &serde_json::json!([8, 12]))
+    );
+    // The runs are the same, so they end with the same bits.
+    let hash = |json: &serde_json::Value| json["points"][0]["hash"].clone();
+    assert!(hash(&whole).is_string());
+    assert_eq!(hash(&late), hash(&whole));
+    // A frame of the range has the distance from the reference that it has in the whole.
+    let apart = |json: &serde_json::Value| json["apart"].as_array().unwrap().clone();
+    assert_eq!(apart(&late)[..], apart(&whole)[7..]);
+}
+
+#[test]
+fn a_recommendation_and_its_page_say_what_the_references_do_not_resolve() {
+    let folder = folder();
+    fs::write(folder.path().join("drape.ron"), SWING).unwrap();
+    let output = nucleus(folder.path(), &["trade", "drape.ron"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stdout(&output);
+    let words = "recommended for an error of 1 %, as far as the references resolve it (not silhouette below 1.33 %): ";
+    assert!(said.contains(words), "{said}");
+    let html = fs::read_to_string(folder.path().join("drape.trade.html")).unwrap();
+    assert!(html.contains(words), "the page says so too");
+    assert!(html.contains("<tr><th>setting</th><th>ms</th>"), "the setting is the first column");
+    // The recommended setting has a resolved error far below the bound of its silhouette.
+    assert!(html.contains("<path class=\"reach\"") && html.contains("may be as large"), "{html}");
 }

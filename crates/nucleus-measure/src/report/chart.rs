@@ -23,6 +23,8 @@ pub struct Axis {
 /// A data point.
 pub struct Dot {
     pub at: [f64; 2],
+    /// The end of a line above it.
+    pub up_to: Option<f64>,
     /// Index of the colour, from 0.
     pub colour: usize,
     pub is_sound: bool,
@@ -172,6 +174,9 @@ impl Chart {
         let is_right = self.x.share(dot.at[0]) > 0.7;
         let (beside, anchor) = if is_right { (x - 10.0, "end") } else { (x + 10.0, "start") };
         html! {
+            @if let Some(end) = dot.up_to.map(|end| self.place([dot.at[0], end])[1]) {
+                path.reach d={ "M" (at(x)) " " (at(y)) "V" (at(end)) "m-4 0h8" } {}
+            }
             circle class={ "dot c" (dot.colour % 6) @if !dot.is_sound { " bad" } } cx=(at(x)) cy=(at(y)) r="5" {
                 title { (dot.title) }
             }

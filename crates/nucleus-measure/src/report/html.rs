@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::{Axis, Chart, Dot, Line};
 use super::figures::{figure, percent};
-use super::text::{component, errors, method_text, time_to};
+use super::text::{component, errors as errors_of, method_text, time_to};
 use crate::trade::{Point, Quantity, Reading, Request, Setting, Trade};
 
 /// A picture of the last state of a run.
@@ -69,7 +69,7 @@ fn lead(page: &Page) -> Markup {
     html! {
         @for line in page.recommendation.lines() { p.lead { (line) } }
         @if let Some(own) = page.trade.own_point().filter(differs) {
-            p { "The scene's own setting, " (own.setting) ", takes " (figure(own.ms)) " ms: " (errors(own)) "." }
+            p { "The scene's own setting, " (own.setting) ", takes " (figure(own.ms)) " ms: " (errors_of(own)) "." }
         }
     }
 }
@@ -119,6 +119,12 @@ fn family(setting: &Setting) -> (Reading, u32) {
     (setting.reading, setting.substeps)
 }
 
+/// The bound of an error that the references do not resolve, where it is above the largest that they do.
+fn known_below(point: &Point) -> Option<f64> {
+    let unresolved = point.errors.iter().filter(|error| !error.is_resolved()).map(|error| 2.0 * error.floor);
+    unresolved.reduce(f64::max).filter(|bound| point.error.is_some_and(|error| *bound > error))
+}
+
 /// Error against time.
 fn trade_chart(page: &Page) -> Markup {
     let trade = page.trade;
@@ -146,16 +152,24 @@ fn trade_chart(page: &Page) -> Markup {
         let trouble = point.trouble().map(|trouble| format!("\n{trouble}")).unwrap_or_default();
         Some(Dot {
             at,
+            up_to: known_below(point),
             colour: colour(&point.setting),
             is_sound: point.is_sound(),
-            title: format!("{}\n{} ms, {}{trouble}", point.setting, figure(point.ms), percent(at[1])),
+            title: format!(
+                "{}\n{} ms, {}\n{}{trouble}",
+                point.setting,
+                figure(point.ms),
+                percent(at[1]),
+                errors_of(point)
+            ),
             label: label.map(str::to_owned),
         })
     };
     let errors = trade.points.iter().filter_map(known).map(|[_, error]| error);
+    let errors = errors.chain(trade.points.iter().filter_map(known_below));
     let chart = Chart {
         x: Axis::log("milliseconds per frame, on one core", trade.points.iter().map(|point| point.ms)),
-        y: Axis::log("error: the largest of all quantities", errors).in_percent(),
+        y: Axis::log("error: the largest that the references resolve", errors).in_percent(),
         dots: trade.points.iter().filter_map(dot).collect(),
         lines: vec![Line { through: trade.frontier().filter_map(known).collect(), class: "frontier" }],
         floor: None,
@@ -175,6 +189,9 @@ fn trade_chart(page: &Page) -> Markup {
                     }
                 }
                 span { i style="border:2px solid var(--bad)" {} "not sound" }
+                @if trade.points.iter().any(|point| known_below(point).is_some()) {
+                    span { "line above a dot: in a quantity that the references do not resolve, the error may be as large" }
+                }
             }
         }
     }
@@ -230,13 +247,13 @@ fn divergence_chart(page: &Page) -> Markup {
 
 fn table(trade: &Trade) -> Markup {
     let measured: Vec<Quantity> = trade.measure.floors.iter().map(|(quantity, _)| *quantity).collect();
-    let figures = ["strain, 99 %", "largest", "energy created", "gap", "setting"];
+    let figures = ["strain, 99 %", "largest", "energy created", "gap"];
     html! {
         h2 { "All settings" }
         div.wide {
             table {
                 tr {
-                    @for head in ["ms", "error", "limited by"] { th { (head) } }
+                    @for head in ["setting", "ms", "error", "limited by"] { th { (head) } }
                     @for quantity in &measured { th { (quantity.name()) } }
                     @for head in figures { th { (head) } }
                 }
@@ -266,12 +283,12 @@ fn row(trade: &Trade, point: &Point, measured: &[Quantity], is_reference: bool) 
     let cells = [figure(point.ms), error, limit].into_iter().chain(measured.iter().map(of)).chain(figures);
     html! {
         tr class=(classes.join(" ")) {
-            @for cell in cells { td { (cell) } }
             td {
                 (point.setting)
                 @if is_reference { ", in double precision" }
                 @if let Some(trouble) = point.trouble() { " " span.trouble { (trouble) } }
             }
+            @for cell in cells { td { (cell) } }
         }
     }
 }

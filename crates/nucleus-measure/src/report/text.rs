@@ -77,7 +77,11 @@ pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
     };
     let mut lines = match wish.choose(trade) {
         Choice::Found(point) => {
-            let mut lines = vec![format!("recommended for {wanted}: {}", costs(point))];
+            let except = match wish {
+                Wish::Error(request) => except(trade, request),
+                Wish::Time(_) => String::new(),
+            };
+            let mut lines = vec![format!("recommended for {wanted}{except}: {}", costs(point))];
             lines.extend(reason(trade, wish, point));
             lines
         }
@@ -98,7 +102,7 @@ pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
             return format!("{reason}: there is no recommendation for {wanted}\n");
         }
     };
-    if let Wish::Error(request) = wish {
+    if let (Wish::Error(request), false) = (wish, matches!(wish.choose(trade), Choice::Found(_))) {
         lines.extend(unresolved(trade, request));
     }
     lines.join("\n") + "\n"
@@ -137,12 +141,23 @@ fn not_measured(trade: &Trade, request: &Request) -> Option<String> {
     (!missing.is_empty()).then(|| format!("{} {verb} not measured", missing.join(" and ")))
 }
 
-/// The quantities in which the references cannot show the wanted error.
-fn unresolved(trade: &Trade, request: &Request) -> Option<String> {
+/// `shape below 1.4 %, silhouette below 6.4 %`: the quantities in which the references cannot show the wanted error.
+fn too_noisy(trade: &Trade, request: &Request) -> Option<String> {
     let name =
         |(quantity, floor): (Quantity, f64)| format!("{} below {}", quantity.name(), percent(2.0 * floor));
     let all: Vec<String> = request.unresolved(&trade.measure).map(name).collect();
-    (!all.is_empty()).then(|| format!("the references do not resolve {}", all.join(", ")))
+    (!all.is_empty()).then(|| all.join(", "))
+}
+
+/// The same as a sentence.
+fn unresolved(trade: &Trade, request: &Request) -> Option<String> {
+    too_noisy(trade, request).map(|all| format!("the references do not resolve {all}"))
+}
+
+/// The limits of a recommendation, which belong in its own sentence.
+fn except(trade: &Trade, request: &Request) -> String {
+    let limits = |all| format!(", as far as the references resolve it (not {all})");
+    too_noisy(trade, request).map(limits).unwrap_or_default()
 }
 
 /// `to 1 %: 12.5 ms per frame with 96 evaluations in 3 substeps`.
