@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use nucleus_measure::trade;
-use nucleus_wedge::{Event, PlannedRun};
+use nucleus_wedge::{Event, PlannedRun, RunOutcome};
 
 use crate::figures;
 use crate::output::{is_quiet, say};
@@ -190,7 +190,7 @@ impl<'a> WedgeProgress<'a> {
         Self { runs, bar, last_line: Instant::now(), all, ended: 0, problems: 0, running }
     }
 
-    /// Shows an event. A run with a problem is named at once.
+    /// Shows an event. A run with a problem is named at once; the report at the end says what it is.
     pub fn show(&mut self, event: &Event) {
         match event {
             Event::Started { run } => drop(self.running.insert(*run, None)),
@@ -198,13 +198,19 @@ impl<'a> WedgeProgress<'a> {
             Event::Ended { run, result } => {
                 self.running.remove(run);
                 self.ended += 1;
-                let problems = match result {
-                    None => vec!["another process is at it".to_owned()],
-                    Some(result) => result.problems(),
+                let ending = match result {
+                    None => Some("is done by another process"),
+                    Some(result) if result.problems().is_empty() => None,
+                    Some(result) => Some(match result.outcome {
+                        RunOutcome::Success | RunOutcome::Problem => "has a problem",
+                        RunOutcome::Failed => "has failed",
+                        RunOutcome::Interrupted => "was interrupted",
+                        RunOutcome::Killed => "was killed",
+                    }),
                 };
-                if !problems.is_empty() {
+                if let Some(ending) = ending {
                     self.problems += 1;
-                    self.say(&format!("run {}: {}", self.name(*run), problems.join("; ")));
+                    self.say(&format!("run {} {ending}", self.name(*run)));
                 }
             }
         }

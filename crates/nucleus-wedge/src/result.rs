@@ -123,10 +123,28 @@ impl RunResult {
     }
 }
 
+/// A value as text: numbers with four significant digits, nothing for null.
+pub(crate) fn rounded(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Number(number) if number.is_f64() && number.as_f64() != Some(0.0) => {
+            let x = number.as_f64().unwrap_or_default();
+            let digits = (3.0 - x.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+            let text = format!("{x:.digits$}");
+            match text.contains('.') {
+                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+                false => text,
+            }
+        }
+        other => other.to_string(),
+    }
+}
+
 fn failed_check(check: &Value) -> String {
     let figure = match (&check["figure"], &check["frame"]) {
         (Value::Null, _) => String::new(),
-        (figure, frame) => format!(" with {figure} at frame {frame}"),
+        (figure, frame) => format!(" with {} at frame {frame}", rounded(figure)),
     };
     format!("check {} failed{figure}", check["check"].as_str().unwrap_or_default())
 }
@@ -154,6 +172,14 @@ mod tests {
         assert_eq!((last.solved().unwrap().milliseconds(), last.seconds), (Some(500.0), 13.0));
         let read: RunResult = serde_json::from_value(json!(last)).unwrap();
         assert_eq!(read, last);
+    }
+
+    #[test]
+    fn the_figure_of_a_failed_check_has_four_digits() {
+        let check = json!({ "check": "maxStretch(0.02)", "passed": false, "figure": 0.075_400_000_000_000_01, "frame": 5 });
+        let report = Some(json!({ "summary": { "checks": [check] } }));
+        let failed = RunResult { report, ..process(RunOutcome::Problem, 0, 9, 1.0) };
+        assert_eq!(failed.problems(), ["check maxStretch(0.02) failed with 0.0754 at frame 5"]);
     }
 
     #[test]

@@ -376,3 +376,18 @@ mod killed {
         assert!(stdout(&output).contains("4 runs: 4 success"), "{}", stdout(&output));
     }
 }
+
+#[test]
+fn the_reason_of_a_problem_is_printed_once() {
+    let folder = folder();
+    scene(folder.path(), 5, "maxStretch(0)");
+    let output = wedge(folder.path(), &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stdout(&output) + &stderr(&output);
+    assert_eq!(said.matches("check maxStretch(0) failed").count(), 4, "{said}");
+    let figure =
+        |line: &str| line.split(" with ").nth(1).and_then(|rest| rest.split(' ').next().map(str::len));
+    let longest = stdout(&output).lines().filter_map(figure).max();
+    assert!(longest.is_some_and(|length| length <= 9), "{said}");
+    assert!(stderr(&output).contains("run 0003 has a problem"), "{said}");
+}

@@ -4,9 +4,10 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::row::{self, Counts, FIGURES, Row};
+use super::row::{Counts, FIGURES, Row};
 use crate::pictures::SIZE;
 use crate::plan::{Plan, PlannedRun};
+use crate::result::rounded;
 
 /// The page as HTML. Pictures are files beside it. `pictured` says which runs have one.
 pub fn html(plan: &Plan, rows: &[Row], counts: Counts, pictured: &dyn Fn(&str) -> bool) -> String {
@@ -96,26 +97,11 @@ fn table(plan: &Plan, rows: &[Row]) -> String {
         }
         for (_, figure) in FIGURES {
             let value = result.map_or(Value::Null, figure);
-            let _ = write!(table, "<td>{}</td>", escape(&shown(&value)));
+            let _ = write!(table, "<td>{}</td>", escape(&rounded(&value)));
         }
         table += "</tr>\n";
     }
     table + "</tbody>\n</table>\n"
-}
-
-/// Numbers with four significant digits.
-fn shown(value: &Value) -> String {
-    match value.as_f64() {
-        Some(x) if value.is_f64() && x != 0.0 => {
-            let digits = (3.0 - x.abs().log10().floor()).clamp(0.0, 12.0) as usize;
-            let text = format!("{x:.digits$}");
-            match text.contains('.') {
-                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-                false => text,
-            }
-        }
-        _ => row::text(value),
-    }
 }
 
 fn escape(text: &str) -> String {
