@@ -192,6 +192,10 @@ pub fn read_table(text: &str, graph: &Graph) -> Result<(Vec<String>, Vec<Row>), 
     };
     let names = head.split(',').map(|name| name.trim().trim_matches('"').to_owned());
     let mut columns: Vec<String> = names.collect();
+    if let (1, Some(sign)) = (columns.len(), head.chars().find(|sign| [';', '\t'].contains(sign))) {
+        let name = if sign == ';' { "semicolons" } else { "tabs" };
+        return Err(refused(line, format!("cells are separated by commas, and this line has {name}")));
+    }
     if columns.iter().collect::<BTreeSet<_>>().len() < columns.len() {
         return Err(refused(line, "an attribute is named twice".to_owned()));
     }
@@ -208,6 +212,9 @@ pub fn read_table(text: &str, graph: &Graph) -> Result<(Vec<String>, Vec<Row>), 
         }
         for (column, part) in columns.iter_mut().zip(parts) {
             let value = unquoted(part, |value| fits(column, value, graph));
+            if value.is_empty() {
+                return Err(refused(line, format!("the cell of `{column}` is empty")));
+            }
             // The same value of an attribute is checked once.
             if checked.insert((column.clone(), value.clone())) {
                 let mut axis: Axis = format!("{column}=0")
@@ -315,6 +322,9 @@ mod tests {
             ("", "line 1: the table is empty"),
             ("c.damp", "line 1: the table has no runs"),
             ("c.damp,c.damp\n1,2", "named twice"),
+            ("c.damp,c.adng\n1,", "line 2: the cell of `c.adng` is empty"),
+            ("c.damp;c.adng\n1;2", "line 1: cells are separated by commas, and this line has semicolons"),
+            ("c.damp\tc.adng\n1\t2", "this line has tabs"),
             ("c.damp\n1,2", "line 2: 2 values, but the first line names 1"),
             ("c.damp\n1\nmuch", "line 3: "),
             ("c.dampp\n1", "did you mean `damp`?"),
