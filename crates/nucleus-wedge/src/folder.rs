@@ -168,6 +168,17 @@ impl WedgeFolder {
         Ok(open.map(|(run, _)| run.run).collect())
     }
 
+    /// What is wrong with the cache of a finished run: it is missing, or has another size than its result says. `None` for
+    /// runs that record nothing.
+    pub fn cache_fault(&self, name: &str, result: &RunResult) -> Option<String> {
+        let recorded = result.figure("bytes").as_u64().filter(|_| result.outcome.is_final())?;
+        match fs::metadata(self.cache(name)) {
+            Ok(file) if file.len() == recorded => None,
+            Ok(file) => Some(format!("its cache has {} of {recorded} bytes", file.len())),
+            Err(_) => Some("its cache is missing".to_owned()),
+        }
+    }
+
     /// Whether a run has left a cache that can be resumed: that of a killed run, or of one that was interrupted.
     ///
     /// # Errors
@@ -242,6 +253,23 @@ mod tests {
         assert_eq!(wedge.open_runs(&plan).unwrap(), [1, 2]);
         fs::write(wedge.result_path("0000"), b"{\"outcome\":").unwrap();
         assert_eq!(wedge.open_runs(&plan).unwrap(), [0, 1, 2], "a damaged result counts as none");
+    }
+
+    #[test]
+    fn a_finished_run_is_asked_for_the_cache_that_it_recorded() {
+        let (_folder, wedge, _) = wedge();
+        let recorded = |bytes: serde_json::Value| RunResult {
+            report: Some(serde_json::json!({ "summary": { "bytes": bytes } })),
+            ..result(RunOutcome::Success)
+        };
+        let fault = |bytes: serde_json::Value| wedge.cache_fault("0000", &recorded(bytes));
+        assert_eq!(fault(9.into()).unwrap(), "its cache is missing");
+        assert_eq!(fault(serde_json::Value::Null), None, "it recorded nothing");
+        fs::write(wedge.cache("0000"), b"12345").unwrap();
+        assert_eq!(fault(9.into()).unwrap(), "its cache has 5 of 9 bytes");
+        assert_eq!(fault(5.into()), None);
+        let stopped = RunResult { outcome: RunOutcome::Interrupted, ..recorded(9.into()) };
+        assert_eq!(wedge.cache_fault("0000", &stopped), None, "it is resumed");
     }
 
     #[test]

@@ -378,6 +378,37 @@ mod killed {
 }
 
 #[test]
+fn a_finished_run_without_its_cache_is_named_and_made_again_when_asked() {
+    let folder = folder();
+    scene(folder.path(), 5, "finite");
+    assert_eq!(wedge(folder.path(), &[]).status.code(), Some(0));
+    let cache = |name: &str| folder.path().join(format!("w/runs/{name}.mcap"));
+    let whole = fs::read(cache("0002")).unwrap();
+    fs::write(cache("0002"), &whole[..whole.len() / 2]).unwrap();
+    fs::remove_file(cache("0001")).unwrap();
+    for more in ["--continue", "--collect"] {
+        let output = nucleus(folder.path(), &["wedge", more, "--out", "w"]);
+        let said = stderr(&output);
+        for words in [
+            "run 0001 is finished, but its cache is missing, so it has no picture: \
+             `nucleus wedge --out w --run 1` makes it again",
+            &format!("run 0002 is finished, but its cache has {} of {} bytes", whole.len() / 2, whole.len()),
+        ] {
+            assert!(said.contains(words), "{words}: {said}");
+        }
+        assert!(!said.contains("run 0000") && !said.contains("run 0003"), "{said}");
+        assert!(!cache("0001").exists(), "a run of hours is not done again unasked");
+        let page = fs::read_to_string(folder.path().join("w/wedge.html")).unwrap();
+        assert!(page.contains("its cache is missing") && page.matches("<figure").count() == 2, "{page}");
+    }
+    let again = nucleus(folder.path(), &["wedge", "--out", "w", "--run", "0..3"]);
+    assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
+    assert!(fs::read(cache("0002")).unwrap() == whole, "the same bits");
+    let output = nucleus(folder.path(), &["wedge", "--collect", "--out", "w"]);
+    assert!(!stderr(&output).contains("warning"), "{}", stderr(&output));
+}
+
+#[test]
 fn the_reason_of_a_problem_is_printed_once() {
     let folder = folder();
     scene(folder.path(), 5, "maxStretch(0)");

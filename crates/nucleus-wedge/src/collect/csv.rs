@@ -10,7 +10,7 @@ pub fn table(plan: &Plan, rows: &[Row]) -> String {
     let head = ["run"].into_iter().chain(plan.header.columns.iter().map(String::as_str)).chain(seed);
     let head = head.chain(["outcome"]).chain(FIGURES.iter().map(|(name, _)| *name));
     let mut table = line(head.chain(["seconds", "machine", "problems"]).map(str::to_owned));
-    for Row { run, result } in rows {
+    for row @ Row { run, result, .. } in rows {
         let seed = has_seeds.then(|| run.seed.map(|seed| seed.to_string()).unwrap_or_default());
         let facts = [run.name.clone()].into_iter().chain(run.values.iter().cloned()).chain(seed);
         let outcome = result.map_or("open", |result| result.outcome.word()).to_owned();
@@ -18,7 +18,7 @@ pub fn table(plan: &Plan, rows: &[Row]) -> String {
         let rest = match result {
             None => [const { String::new() }; 3],
             Some(result) => {
-                [format!("{}", result.seconds), result.machine.clone(), result.problems().join("; ")]
+                [format!("{}", result.seconds), result.machine.clone(), row.problems().join("; ")]
             }
         };
         table += &line(facts.chain([outcome]).chain(figures.map(Option::unwrap_or_default)).chain(rest));

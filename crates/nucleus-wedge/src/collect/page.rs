@@ -42,9 +42,9 @@ fn timing(rows: &[Row]) -> String {
 fn failures(rows: &[Row]) -> String {
     let mut list = String::new();
     for row in rows {
-        let Some(result) = row.result.filter(|result| !result.problems().is_empty()) else { continue };
+        let Some(result) = row.result.filter(|_| !row.problems().is_empty()) else { continue };
         let (name, word) = (escape(&row.run.name), result.outcome.word());
-        let why = escape(&result.problems().join("; "));
+        let why = escape(&row.problems().join("; "));
         let _ = writeln!(
             list,
             "<li class=\"{word}\"><a href=\"logs/{name}.txt\">{name}</a> ({}): {why}</li>",
@@ -88,7 +88,7 @@ fn table(plan: &Plan, rows: &[Row]) -> String {
         let _ = write!(table, "<th>{}</th>", escape(head));
     }
     table += "</tr></thead>\n<tbody>\n";
-    for Row { run, result } in rows {
+    for Row { run, result, .. } in rows {
         let word = result.map_or("open", |result| result.outcome.word());
         let _ = write!(table, "<tr class=\"{word}\"><td>{}</td>", escape(&run.name));
         let seed = run.seed.map(|seed| seed.to_string()).unwrap_or_default();
@@ -134,10 +134,13 @@ mod tests {
             report: None,
         };
         let plan = Plan { header, runs: vec![run] };
-        let rows = [Row { run: &plan.runs[0], result: Some(&result) }];
+        let rows = [Row { run: &plan.runs[0], result: Some(&result), fault: Some("its cache is missing") }];
         let counts = Counts::of(rows.iter().map(|row| row.result));
         let page = html(&plan, &rows, counts, &|_| true);
-        assert!(page.contains("1 run: 1 failed") && page.contains("the disk is full"), "{page}");
+        assert!(
+            page.contains("1 run: 1 failed") && page.contains("the disk is full; its cache is missing"),
+            "{page}"
+        );
         assert!(page.contains("up to 2 runs side by side") && page.contains("seed 7"), "{page}");
         assert!(!page.contains("<b>.ron") && !page.contains("\"<script>\""), "{page}");
     }

@@ -12,6 +12,16 @@ pub struct Row<'a> {
     pub run: &'a PlannedRun,
     /// Its result; `None` if it has not ended.
     pub result: Option<&'a RunResult>,
+    /// What is wrong with the cache that it has left.
+    pub fault: Option<&'a str>,
+}
+
+impl Row<'_> {
+    /// The problems of the run and of its cache, in words.
+    pub fn problems(&self) -> Vec<String> {
+        let of_run = self.result.map(RunResult::problems).unwrap_or_default();
+        of_run.into_iter().chain(self.fault.map(str::to_owned)).collect()
+    }
 }
 
 /// How many runs ended in which way.

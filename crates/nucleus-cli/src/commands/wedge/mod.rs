@@ -138,7 +138,14 @@ impl Wedge {
 
     /// Collects and prints the results.
     fn report(&self, folder: &WedgeFolder, plan: &Plan) -> Result<Outcome> {
-        let Collected { counts, without_picture } = collect(folder, plan, thread_count(None))?;
+        let Collected { counts, without_picture, without_cache } = collect(folder, plan, thread_count(None))?;
+        for (run, why) in &without_cache {
+            let (name, out) = (&plan.runs[*run as usize].name, shell_word(&self.out));
+            say!(
+                "warning: run {name} is finished, but {why}, so it has no picture: `nucleus wedge --out {out} --run {run}` \
+                 makes it again"
+            );
+        }
         for (name, why) in &without_picture {
             say!("warning: there is no picture of run {name}: {why}");
         }
@@ -151,7 +158,7 @@ impl Wedge {
         match self.json {
             true => output::report_json(&json!({ "wedge": {
                 "runs": counts.all, "success": counts.success, "problem": counts.problem, "failed": counts.failed,
-                "open": counts.open, "page": folder.page(), "table": folder.table(),
+                "open": counts.open, "without_cache": without_cache.len(), "page": folder.page(), "table": folder.table(),
             }})),
             false => {
                 let (page, table) = (folder.page(), folder.table());

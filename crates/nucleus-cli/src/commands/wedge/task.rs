@@ -49,7 +49,9 @@ pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result
     };
     // It may have ended since the plan was looked at.
     let earlier = folder.result(&planned.name)?;
-    if earlier.as_ref().is_some_and(|result| result.outcome.is_final()) {
+    let is_finished =
+        |result: &RunResult| result.outcome.is_final() && folder.cache_fault(&planned.name, result).is_none();
+    if earlier.as_ref().is_some_and(is_finished) {
         return Ok(Outcome::Success);
     }
     process::listen_for_signals()?;
