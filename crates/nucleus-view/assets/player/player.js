@@ -3,13 +3,14 @@
 import { Cache, floorAt } from "./cache.js";
 import { Camera } from "./camera.js";
 import { distances, fittedScale, percentile } from "./compare.js";
+import { boxOf, boxToFrame, extentOf, unionOf } from "./framing.js";
 import {
   byId, countPoints, showComparison, showContactStates, showFigures, showLegend, showLegendNote, showNotice, showObjects, showSelections,
   showPicks, showSeriesFigures, showSeriesNow, showSpeed, showState, showTime,
 } from "./panel.js";
 import { pointAt } from "./pick.js";
 import { levelPlane } from "./plane.js";
-import { Scene, boxOf, unionOf } from "./scene.js";
+import { Scene } from "./scene.js";
 import { Series } from "./series.js";
 import { nearestValues, particleSpeeds } from "./speed.js";
 import { hasSurfaces, withSurfaces } from "./surface.js";
@@ -60,7 +61,7 @@ export class Player {
     ["difference", "twin"].forEach((id) => (byId(id).hidden = !this.other));
     const stage = await this.findStage(cache);
     scene.setStage(stage.box, stage.floor);
-    camera.frame(stage.box, scene.aspect);
+    camera.frame(stage.framed, scene.aspect);
     scene.look.scales.speed = cache.run.unitsPerMetre * FULL_SPEED;
     showIncomplete(cache);
     this.describe(cache, name);
@@ -111,7 +112,7 @@ export class Player {
     }
     this.followCamera(cache);
     this.scene.setStage(stage.box, stage.floor);
-    this.camera.measure(stage.box);
+    this.camera.measure(stage.framed);
     this.take(cache);
     Object.assign(this.timeline, { index: Math.min(index, cache.frames.length - 1), marks, speed, isLooping });
     if (isPlaying) {
@@ -131,12 +132,13 @@ export class Player {
     camera.track = found ?? null;
   }
 
-  // The bounding box of the run, from a few frames, and the plane of its floor.
+  // From a few frames: the bounding box of the run, the box that a camera frames, and the plane of the floor.
   async findStage(cache) {
     const last = cache.frames.length - 1;
-    const [simulated, all] = [[], []];
+    const [simulated, all, framed] = [[], [], []];
     for (const frame of new Set([last, last >> 1, 0])) {
       const { positions = [] } = await cache.state(frame).catch(() => ({}));
+      framed.push(boxToFrame(positions.map((points, k) => ({ kind: cache.objects[k].topology.kind, points }))));
       positions.forEach((points, k) => {
         const { kind, radius } = cache.objects[k].topology;
         const box = boxOf(points, kind === "particles" ? radius : 0);
@@ -146,9 +148,8 @@ export class Player {
     }
     const box = unionOf(simulated) ?? unionOf(all) ?? DEFAULT_STAGE;
     // A collider may be a landscape that reaches far below the cloth.
-    const extent = Math.max(...box.high.map((x, axis) => x - box.low[axis]));
-    const below = () => levelPlane(Math.max(unionOf(all)?.low[1] ?? 0, box.low[1] - extent * 1.5));
-    return { box, floor: cache.run.floor ?? below() };
+    const below = () => levelPlane(Math.max(unionOf(all)?.low[1] ?? 0, box.low[1] - extentOf(box) * 1.5));
+    return { box, framed: unionOf(framed.filter(Boolean)) ?? box, floor: cache.run.floor ?? below() };
   }
 
   async show(cache, index, timeIndex) {

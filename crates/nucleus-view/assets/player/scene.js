@@ -2,7 +2,8 @@
 
 import { cross, multiply, normalise, orthographic, view } from "./camera.js";
 import { VertexArray, context, depthTarget, program } from "./gl.js";
-import { MAX_COORDINATE, Mesh } from "./mesh.js";
+import { boxToFrame } from "./framing.js";
+import { Mesh } from "./mesh.js";
 import { Particles, VALUE as PARTICLE_VALUE } from "./particles.js";
 import { Picks } from "./pick.js";
 import { axesOf, foot } from "./plane.js";
@@ -134,11 +135,10 @@ export class Scene {
     this.isShadowStale = true;
   }
 
-  // The box around all visible simulated objects, or around all visible objects; null if none is visible.
+  // The box that a camera frames, of all visible objects; null if none is visible.
   bounds() {
     const shown = this.objects.filter(({ isShown }) => isShown).concat(this.look.twin === "beside" ? this.twins : []);
-    const simulated = shown.filter(({ mesh }) => mesh.kind !== "collider");
-    return unionOf((simulated.length > 0 ? simulated : shown).map(({ mesh }) => mesh.bounds));
+    return boxToFrame(shown.map(({ mesh }) => mesh).filter(({ points }) => points));
   }
 
   get invalidPoints() {
@@ -347,26 +347,6 @@ function setMesh(object, topology) {
     const { shift } = object.mesh;
     Object.assign(object, { topology, mesh: Object.assign(new Mesh(topology), { shift }) });
   }
-}
-
-// The bounding box of points, or of balls of a radius, without points that are not finite.
-export function boxOf(points, radius = 0) {
-  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  for (let k = 0; k < points.length; k += 3) {
-    const isDrawn = [0, 1, 2].every((axis) => Math.abs(points[k + axis]) <= MAX_COORDINATE); // false for NaN
-    for (let axis = 0; isDrawn && axis < 3; axis += 1) {
-      low[axis] = Math.min(low[axis], points[k + axis] - radius);
-      high[axis] = Math.max(high[axis], points[k + axis] + radius);
-    }
-  }
-  return { low, high };
-}
-
-// The union of boxes; null if all are empty. The bounds of an empty box are infinite and do not extend the union.
-export function unionOf(boxes) {
-  const low = [0, 1, 2].map((axis) => Math.min(...boxes.map((box) => box.low[axis])));
-  const high = [0, 1, 2].map((axis) => Math.max(...boxes.map((box) => box.high[axis])));
-  return low.every((x, axis) => x <= high[axis]) ? { low, high } : null;
 }
 
 // The smallest of 1, 2, 5, 10 ... that is not below a length.

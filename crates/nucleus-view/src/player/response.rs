@@ -184,6 +184,7 @@ const ASSETS: &[Asset] = assets![
     "/player/camera.js" as SCRIPT,
     "/player/compare.js" as SCRIPT,
     "/player/figures.js" as SCRIPT,
+    "/player/framing.js" as SCRIPT,
     "/player/gl.js" as SCRIPT,
     "/player/link.js" as SCRIPT,
     "/player/live.js" as SCRIPT,
