@@ -22,7 +22,7 @@ use super::walls::Walls;
 /// Most iterations in a time step.
 const MAX_ITERATIONS: u32 = 100;
 /// Mean excess of density at which the solution is accepted.
-pub const TOLERANCE: f32 = 2e-4;
+const TOLERANCE: f32 = 2e-4;
 /// Largest eigenvalue of the preconditioned system that is taken for granted. It grows where a step shows a larger one.
 const START_EIGENVALUE: f32 = 2.0;
 

@@ -6,23 +6,21 @@
 //! of all constraints do. Inside, lengths are in rest distances, from where its first particle begins the frame.
 //!
 //! A liquid is set up again at the start of each frame, so a checkpoint stores nothing of it, and after births and
-//! deaths. Within a frame it keeps the pressure of each particle, and the excess of density that the solver has left: that
-//! goes at a limited rate, because its correction becomes velocity. The constraint is linear, so there is more of it at the
-//! end of a step, most where walls move far or leave no room. It is measured at the start of the next, of which at most so
-//! much goes at once as an approach at a limited speed makes. Taken for motion of that step, it made a liquid leave a floor
-//! that starts at 8 m/s with 29 m/s, and one that a piston left no room reached 37 km/s.
+//! deaths. Within a frame it keeps the pressure of each particle, and the [excess] of density that the solver has left.
 //!
 //! | You want to know… | Read |
 //! |---|---|
 //! | the kernel, and that of a half-space | [`kernel`] |
 //! | neighbour search | [`grid`], [`neighbours`], [`near`], [`pair`] |
 //! | density, and the solver of pressure | [`density`] |
+//! | how fast an excess of density goes | [`excess`] |
 //! | ground plane, colliders, cloth and other particles beside a liquid | [`walls`], [`ball`] |
 //! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
 //! | how long its time steps are | [`time_step`] |
 
 pub mod ball;
 pub mod density;
+pub mod excess;
 pub mod grid;
 pub mod kernel;
 pub mod near;
@@ -47,19 +45,12 @@ use crate::schedule::{StepInterval, TimeStep};
 use crate::state::State;
 
 use density::{Density, Load};
+use excess::{Excess, Recovery};
 use neighbours::{CHUNK, Neighbours, chunk_range};
 use time_step::{LiquidInterval, LiquidMotion};
 use viscosity::Viscosity;
 use walls::{Corner, Material, Plane, Walls};
 
-/// Rate at which an excess of density that the solver has left goes, in 1/s.
-const RECOVERY: f32 = 10.0;
-/// Largest share of it that goes in a time step.
-const MAX_RECOVERY: f32 = 0.5;
-/// Speed in m/s of particles towards each other that makes as much excess in a time step as goes in one of that from before,
-/// whatever its cause. At 0.1 m/s falling honey was compressed by a third; at 1 m/s a floor that starts at 8 m/s threw a
-/// liquid off at 10.
-const RECOVERY_SPEED: f64 = 0.6;
 /// Least radius in rest distances of the ball of liquid that a particle of another object counts as.
 const MIN_BALL: f32 = 0.05;
 /// Radius of a ball of the volume of a cube, in sides of the cube: the third root of 3 / 4 pi.
@@ -74,11 +65,9 @@ pub struct LiquidSolver {
     walls: Walls,
     density: Density,
     viscosity: Viscosity,
-    /// By particle: the multiplier over the squared time step, the excess of density that earlier steps have left, and all of
-    /// it before the time step.
+    /// Multiplier of each particle over the squared time step.
     pressure: Vec<f32>,
-    excess: Vec<f32>,
-    before: Vec<f32>,
+    excess: Excess,
     positions: Vec<[f32; 3]>,
     velocities: Vec<[f32; 4]>,
     loads: Vec<Load>,
@@ -105,6 +94,12 @@ struct LiquidStep {
     h: f64,
     ahead: f64,
     span: StepInterval,
+}
+
+impl LiquidStep {
+    fn recovery(&self) -> Recovery {
+        Recovery::new(self.h, self.settings.spacing)
+    }
 }
 
 impl LiquidSolver {
@@ -187,49 +182,48 @@ impl LiquidSolver {
             ahead,
             span,
         };
-        self.measure(scene, state, &step, pool);
         if begins {
             self.pressure.clear();
             self.pressure.resize(rows.len(), 0.0);
-            self.excess.clone_from(&self.before);
         }
-        self.gather(scene, state, &step, step.ahead);
+        self.gather(scene, state, &step);
         self.find_walls(scene, state, &step);
         self.neighbours.find(&self.positions, &self.walls, pool);
+        self.measure_excess(scene, state, &step, begins, pool);
         self.load(rows.start, state, &step, pool);
         self.solve(rows.start, state, &step, pool);
     }
 }
 
 impl LiquidSolver {
-    /// Measures the excess of density of each particle before the time step.
-    fn measure<R: Real>(
+    /// Measures the excess of density before the time step, where the step must know it. That of a compressible liquid
+    /// follows from its pressure.
+    fn measure_excess<R: Real>(
         &mut self,
         scene: LiquidScene<'_, R>,
         state: &State<R>,
         step: &LiquidStep,
+        begins: bool,
         pool: &ThreadPool,
     ) {
-        let before = LiquidStep { span: StepInterval { to: step.span.from, ..step.span }, ..*step };
-        self.gather(scene, state, step, step.ahead - step.h);
-        self.find_walls(scene, state, &before);
-        self.neighbours.find(&self.positions, &self.walls, pool);
-        self.before.clear();
-        self.before.resize(self.positions.len(), 0.0);
-        for (&particle, sums) in self.neighbours.grid.order().iter().zip(&self.neighbours.sums) {
-            self.before[particle as usize] = (sums[0] - 1.0).max(0.0);
+        let any = self.excess.choose(&self.neighbours, step.recovery(), begins);
+        if any && step.settings.incompressibility >= 1.0 {
+            let span = StepInterval { to: step.span.from, ..step.span };
+            let start = LiquidStep { ahead: step.ahead - step.h, span, ..*step };
+            self.gather(scene, state, &start);
+            self.find_walls(scene, state, &start);
+            self.excess.measure(&self.positions, &self.walls, pool);
+            self.gather(scene, state, step);
+            self.find_walls(scene, state, step);
+        }
+        if begins {
+            self.excess.begin();
         }
     }
 
-    /// Takes up the positions of the particles in `ahead` seconds, at constant velocity.
-    fn gather<R: Real>(
-        &mut self,
-        scene: LiquidScene<'_, R>,
-        state: &State<R>,
-        step: &LiquidStep,
-        ahead: f64,
-    ) {
-        let (per_metre, ahead) = (1.0 / step.settings.spacing, R::from_f64(ahead));
+    /// Takes up the positions of the particles at the end of the time step, at constant velocity.
+    fn gather<R: Real>(&mut self, scene: LiquidScene<'_, R>, state: &State<R>, step: &LiquidStep) {
+        let (per_metre, ahead) = (1.0 / step.settings.spacing, R::from_f64(step.ahead));
         self.positions.clear();
         self.positions.extend(scene.model.cloths[step.cloth].points().map(|row| {
             let row = row as usize;
@@ -334,9 +328,7 @@ impl LiquidSolver {
 
     /// Computes the load of the pressure solver, after viscosity and surface tension.
     fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
-        let Self {
-            neighbours, density, viscosity, pressure, excess, before, velocities, loads, factors, ..
-        } = self;
+        let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, factors, .. } = self;
         let LiquidStep { settings, h, .. } = *step;
         let order = neighbours.grid.order();
         let by_particle = state.population_of(step.cloth).map_or([&[][..]; 2], Population::liquid_factors);
@@ -360,12 +352,11 @@ impl LiquidSolver {
         }
         let tension = (settings.surface_tension * squared * per_metre) as f32;
         let pull = surface_tension::strength(tension) * (h * h) as f32;
-        let recovery = (RECOVERY * h as f32).min(MAX_RECOVERY);
-        let most_at_once = (RECOVERY_SPEED * h * per_metre) as f32;
+        let recovery = step.recovery();
         density.lambda.resize(order.len(), 0.0);
         loads.resize(order.len(), Load::default());
         let (lambda, loads) = (DisjointSlice::new(&mut density.lambda), DisjointSlice::new(loads));
-        let excess = DisjointSlice::new(excess);
+        let (excess, before) = (DisjointSlice::new(&mut excess.left), &excess.before[..]);
         pool.parallel_for(order.len().div_ceil(CHUNK as usize), |chunk| {
             let range = chunk_range(chunk, order.len());
             // SAFETY: chunks do not overlap.
@@ -386,13 +377,10 @@ impl LiquidSolver {
                 // SAFETY: the order holds each particle once.
                 #[allow(unsafe_code)]
                 let left = unsafe { excess.get(particle) };
-                // What stays of the excess from before. The excess of a compressible liquid follows from its pressure.
+                // What stays of the excess from before.
                 let kept = match settings.incompressibility < 1.0 {
                     true => 0.0,
-                    false => {
-                        let stays = (left * (1.0 - recovery)).max(before[particle as usize] - most_at_once);
-                        stays.min(now).max(0.0)
-                    }
+                    false => recovery.kept(now, left, before[particle as usize]),
                 };
                 // SAFETY: as above.
                 #[allow(unsafe_code)]
@@ -423,7 +411,7 @@ impl LiquidSolver {
         for (at, &particle) in neighbours.grid.order().iter().enumerate() {
             let row = &mut displacement[(first + particle) as usize];
             (0..3).for_each(|axis| row.0[axis] += metres(density.moved[at][axis]));
-            let left = &mut excess[particle as usize];
+            let left = &mut excess.left[particle as usize];
             pressure[particle as usize] = density.lambda[at] / (h * h) as f32;
             *left += density.left(at);
             sum += f64::from((*left + compliance * density.lambda[at]).max(0.0));
