@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use nucleus_graph::attributes::{Attribute, Effect, Kind, NodeType, Range, Value, node_type, node_types};
 use nucleus_graph::checks::{Form, RENAMED};
-use nucleus_graph::compile::defaults_by_type;
+use nucleus_graph::compile::{defaults_by_type, particle_variables};
 use nucleus_graph::paint;
 use nucleus_graph::scene::{Preset, presets};
 use nucleus_maya::maya_preset;
@@ -212,17 +212,6 @@ impl Checks {
     }
 }
 
-/// Variables of the expressions of particles, each with its meaning.
-const PARTICLE_VARIABLES: [(&str, &str); 7] = [
-    ("vx, vy, vz", "its velocity in scene units per second; may be assigned"),
-    ("lifespan", "the age in seconds at which it dies; may be assigned"),
-    ("x, y, z", "its place; may be assigned in `creationExpression`"),
-    ("age", "seconds since its birth"),
-    ("id", "its number, which no other particle has"),
-    ("time", "the time of the frame in seconds"),
-    ("rand, rand2, rand3", "random numbers from 0 to 1, new in every frame"),
-];
-
 /// Lists the variables, operators and functions of expressions: `thicknessPerVertex: expression("y > 1 ? 2 : 1")`.
 #[derive(Debug, Args)]
 pub struct Functions {}
@@ -241,7 +230,7 @@ impl Functions {
         section("Variables of a point", &mut paint::variables())?;
         section(
             "\nVariables of a particle, in `creationExpression` and `runtimeExpression`",
-            &mut PARTICLE_VARIABLES.into_iter(),
+            &mut particle_variables(),
         )?;
         section("\nOperators, the weakest first", &mut paint::operators())?;
         section("\nFunctions", &mut paint::functions())?;

@@ -93,6 +93,7 @@ pub(crate) use geometry::max_points;
 pub use geometry::primitive_surface;
 pub(crate) use liquids::self_collides;
 pub use mesh_files::file_mesh;
+pub use particle_expressions::particle_variables;
 pub use program::{NamedSelection, NucleusProgram, Object, ObjectKind, Program};
 pub(crate) use sources::EmitterState;
 pub use texture_coordinates::{MeshCoordinates, texture_coordinates};

@@ -16,9 +16,31 @@ use super::compiler::Compiler;
 use super::program::EvaluationInterval;
 use super::sources::Emitter;
 
-/// The variables: those that may be assigned at birth come first, of them those at run time.
-pub(super) const NAMES: [&str; 13] =
-    ["vx", "vy", "vz", "lifespan", "x", "y", "z", "age", "id", "time", "rand", "rand2", "rand3"];
+/// The variables and their meaning: those that may be assigned at birth come first, of them those at run time.
+const VARIABLES: [(&str, &str); 13] = [
+    ("vx", "X component of its velocity in scene units per second; may be assigned"),
+    ("vy", "Y component of its velocity; may be assigned"),
+    ("vz", "Z component of its velocity; may be assigned"),
+    ("lifespan", "the age in seconds at which it dies; may be assigned"),
+    ("x", "X coordinate of its place in scene units; may be assigned at birth"),
+    ("y", "Y coordinate of its place; may be assigned at birth"),
+    ("z", "Z coordinate of its place; may be assigned at birth"),
+    ("age", "seconds since its birth"),
+    ("id", "its number; at birth, that among those of its emitter"),
+    ("time", "seconds since the start"),
+    ("rand", "a random number from 0 to 1, new for each particle in each frame"),
+    ("rand2", "a second one"),
+    ("rand3", "a third one"),
+];
+/// Their names.
+pub(super) const NAMES: [&str; VARIABLES.len()] = {
+    let (mut names, mut at) = ([""; VARIABLES.len()], 0);
+    while at < names.len() {
+        names[at] = VARIABLES[at].0;
+        at += 1;
+    }
+    names
+};
 /// How many of them may be assigned at run time, and at birth.
 const WRITABLE: [usize; 2] = [4, 7];
 
@@ -47,6 +69,11 @@ impl Compiler<'_> {
     pub(super) fn has_runtime_expression(&self, node: NodeId) -> bool {
         !self.start.get(node, &n_particle::RUNTIME_EXPRESSION).is_empty()
     }
+}
+
+/// The variables of expressions of particles, each with its meaning.
+pub fn particle_variables() -> impl Iterator<Item = (&'static str, &'static str)> {
+    VARIABLES.into_iter()
 }
 
 /// Adds particles for which an expression gave no valid result.
