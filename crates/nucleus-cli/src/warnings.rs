@@ -117,7 +117,8 @@ pub fn large_compression(statistics: &RunStatistics, checks: &[Outcome]) -> Opti
     let is_checked = limit(checks, VOLUME_ERROR).is_some();
     (!is_checked && compression > MAX_COMPRESSION).then(|| {
         format!(
-            "warning: liquid is compressed by {} at frame {frame}: it may have too little room between what it touches;              allow it with the check `{VOLUME_ERROR}(frame: {frame}, share: {})`",
+            "warning: liquid is compressed by {} at frame {frame}: it may have too little room between what it touches; \
+             allow it with the check `{VOLUME_ERROR}(frame: {frame}, share: {})`",
             figures::percent(compression),
             figures::number((100.0 * compression).ceil() / 100.0)
         )
