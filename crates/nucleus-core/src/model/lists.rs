@@ -49,15 +49,7 @@ impl ClothLists {
         air: true,
         damp: true,
         self_collision: true,
-        signed_bend: false,
-        bend_angles: false,
-        pressure: false,
-        shape: false,
-        shells: false,
-        plastic: false,
-        tethers: false,
-        long_links: false,
-        buckling: false,
+        ..Self::NONE
     };
 
     /// Everything off: free points.

@@ -71,7 +71,7 @@ pub struct Population {
     /// reads the acceleration.
     last_velocity: Vec<[f64; 3]>,
     acceleration: Vec<f64>,
-    /// Whether each particle touched anything at the end of the last time step, and how often it has collided; empty without
+    /// Whether each particle has touched something ever since its last collision, and how often it has collided; empty without
     /// collision events.
     touches: Vec<bool>,
     collisions: Vec<u32>,
