@@ -132,10 +132,9 @@ export class Mesh {
     return true;
   }
 
-  // Copies positions to vertices and computes their bounding box. An invalid point becomes the origin and is not drawn.
+  // Copies positions to vertices. An invalid point becomes the origin and is not drawn.
   setPositions(points) {
     const { positions, vertexPoint, isInvalid, shift } = this;
-    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     for (let v = 0; v < this.count; v += 1) {
       const at = 3 * vertexPoint[v];
       let isValid = true;
@@ -144,13 +143,9 @@ export class Mesh {
       }
       isInvalid[v] = isValid ? 0 : 1;
       for (let axis = 0; axis < 3; axis += 1) {
-        const x = isValid ? points[at + axis] + shift[axis] : 0;
-        positions[3 * v + axis] = x;
-        low[axis] = isValid && x < low[axis] ? x : low[axis];
-        high[axis] = isValid && x > high[axis] ? x : high[axis];
+        positions[3 * v + axis] = isValid ? points[at + axis] + shift[axis] : 0;
       }
     }
-    this.bounds = { low, high };
   }
 
   // Per vertex, the strain of largest magnitude among its edges.
