@@ -32,14 +32,7 @@ const FEATURES: [Feature; 7] = [
         |_| {},
         |frame| {
             let (origin, normal) = (Vector3::y() * -99.0, Vector3::y());
-            frame.plane = Some(GroundPlane {
-                origin,
-                normal,
-                start: None,
-                bounce: 0.0,
-                friction: 0.0,
-                stickiness: 0.0,
-            });
+            frame.plane = Some(GroundPlane::new(origin, normal));
         },
     ),
 ];

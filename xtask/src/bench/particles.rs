@@ -195,14 +195,7 @@ fn input(kind: Kind, spacing: f64) -> FrameInput {
         liquid: (kind == Kind::Liquid).then_some(water),
         ..ClothFrame::default()
     };
-    let plane = GroundPlane {
-        origin: -Vec3::y() * 0.5,
-        normal: Vec3::y(),
-        start: None,
-        bounce: 0.0,
-        friction: 0.2,
-        stickiness: 0.0,
-    };
+    let plane = GroundPlane { friction: 0.2, ..GroundPlane::new(-Vec3::y() * 0.5, Vec3::y()) };
     let collider = ColliderFrame {
         collide: kind == Kind::Free,
         thickness: 0.001,

@@ -154,14 +154,7 @@ fn set_ball_and_ground(frame: &mut FrameInput) {
         cloth.stretch_damp = ClothFrame::default().stretch_damp;
     }
     frame.colliders = vec![ColliderFrame { collide: true, thickness, friction, ..ColliderFrame::default() }];
-    frame.plane = Some(GroundPlane {
-        origin: Vector3::zeros(),
-        normal: Vector3::y(),
-        start: None,
-        bounce: 0.0,
-        friction,
-        stickiness: 0.0,
-    });
+    frame.plane = Some(GroundPlane { friction, ..GroundPlane::new(Vector3::zeros(), Vector3::y()) });
 }
 
 fn pin(sheet: &Surface, point: u32) -> Pin {

@@ -356,8 +356,7 @@ mod tests {
     use super::*;
 
     fn plane(origin: [f64; 3], normal: [f64; 3]) -> GroundPlane {
-        let (origin, normal) = (origin.into(), normal.into());
-        GroundPlane { origin, normal, start: None, bounce: 0.0, friction: 0.0, stickiness: 0.0 }
+        GroundPlane::new(origin.into(), normal.into())
     }
 
     fn half_way() -> StepInterval {

@@ -167,6 +167,13 @@ pub struct GroundPlane {
     pub stickiness: f64,
 }
 
+impl GroundPlane {
+    /// A plane through a point in metres with a normal of any length, without bounce, friction or stickiness.
+    pub const fn new(origin: Vector3<f64>, normal: Vector3<f64>) -> Self {
+        Self { origin, normal, start: None, bounce: 0.0, friction: 0.0, stickiness: 0.0 }
+    }
+}
+
 /// A pinned point, which moves along a straight line during the frame (a transform constraint).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pin {

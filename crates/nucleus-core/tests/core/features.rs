@@ -28,14 +28,7 @@ const FEATURES: [Feature; 7] = [
     (|_| {}, |frame| frame.plane = Some(PLANE), "ground", POINTS),
 ];
 
-const PLANE: GroundPlane = GroundPlane {
-    origin: Vec3::new(0.0, -9.0, 0.0),
-    normal: Vec3::new(0.0, 1.0, 0.0),
-    start: None,
-    bounce: 0.0,
-    friction: 0.0,
-    stickiness: 0.0,
-};
+const PLANE: GroundPlane = GroundPlane::new(Vec3::new(0.0, -9.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
 
 /// A frame with gravity only.
 fn bare() -> FrameInput {

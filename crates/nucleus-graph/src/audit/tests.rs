@@ -168,14 +168,7 @@ fn a_ground_plane_moves_linearly_in_each_span_from_the_end_of_the_span_before() 
         .input(&mut AttachmentState::default(), &|_, _| Vector3::zeros());
     let mut put = |planes: &mut GroundPlanes, height: f64, span: [f64; 2]| {
         let (origin, normal) = (Vector3::y() * height, Vector3::y());
-        input.plane = Some(core::GroundPlane {
-            origin,
-            normal,
-            start: None,
-            bounce: 0.0,
-            friction: 0.0,
-            stickiness: 0.0,
-        });
+        input.plane = Some(core::GroundPlane::new(origin, normal));
         planes.begin_span(0, 0, &input, span);
     };
     let mut planes = GroundPlanes::default();

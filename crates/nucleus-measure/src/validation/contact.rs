@@ -42,14 +42,7 @@ fn on_plane(normal: Vec3, friction: f64, height: f64) -> Result<Fixture, BuildEr
     fixture.cloth().stiffness = membrane(1e3);
     fixture.cloth().thickness = THICKNESS;
     fixture.cloth().friction = 0.0;
-    fixture.frame.plane = Some(GroundPlane {
-        origin: Vec3::zeros(),
-        normal,
-        start: None,
-        bounce: 0.0,
-        friction,
-        stickiness: 0.0,
-    });
+    fixture.frame.plane = Some(GroundPlane { friction, ..GroundPlane::new(Vec3::zeros(), normal) });
     Ok(fixture)
 }
 

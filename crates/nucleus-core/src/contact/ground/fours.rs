@@ -183,7 +183,7 @@ mod tests {
     fn plane(height: f64, tilt: f64) -> GroundPlane {
         let normal = nalgebra::Vector3::new(tilt, 1.0, 0.0);
         let origin = nalgebra::Vector3::new(0.0, height, 0.0);
-        GroundPlane { origin, normal, start: None, bounce: 0.0, friction: 0.3, stickiness: 0.0 }
+        GroundPlane { friction: 0.3, ..GroundPlane::new(origin, normal) }
     }
 
     proptest! {

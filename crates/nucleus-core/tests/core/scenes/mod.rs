@@ -81,14 +81,7 @@ pub fn frame(substeps: u32, resistance: ResistanceModel) -> FrameInput {
 
 /// The ground plane at height zero.
 pub fn ground(friction: f64) -> GroundPlane {
-    GroundPlane {
-        origin: Vec3::zeros(),
-        normal: Vec3::y(),
-        start: None,
-        bounce: 0.0,
-        friction,
-        stickiness: 0.0,
-    }
+    GroundPlane { friction, ..GroundPlane::new(Vec3::zeros(), Vec3::y()) }
 }
 
 /// A model of one cloth and these colliders.
