@@ -198,7 +198,8 @@ pub struct StepReport {
     /// whose motion the safeguard reverted or truncated; counted each time.
     pub pairs_reverted: u64,
     /// Pairs that no fallback could certify, so that one may have passed through the other; counted once per time step.
-    /// Pins or colliders leave them no feasible motion, or they touched when the time step began.
+    /// Pins or colliders leave them no feasible motion, or they touched when the time step began. A point that a pin carries
+    /// through the ground plane is counted in that frame.
     pub pairs_unresolved: u64,
     /// Points inside a closed collider, in depenetration.
     pub depenetrating: u64,

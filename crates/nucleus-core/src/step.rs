@@ -32,6 +32,7 @@ use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_c
 use crate::contact::collider::start_gaps::record_start_gaps;
 use crate::contact::exclusion::update_pair_filter;
 use crate::contact::force_field::apply_force_fields;
+use crate::contact::ground::carried::count_carried_points;
 use crate::contact::point_field::apply_point_fields;
 use crate::contact::push_out::{end_push_out, push_out};
 use crate::contact::restitution::apply_restitution;
@@ -93,6 +94,8 @@ fn solve_frame<R: CompiledReal>(
     let mut counters = ContactCounters::default();
     observer.enter(Stage::FrameStart);
     begin_frame(solver, frame);
+    *counters.pairs_unresolved.get_mut() +=
+        count_carried_points(&solver.contact, &solver.model.cloths, frame);
     if solve_substeps(solver, frame, &schedule, &mut counters, observer).is_break() {
         return StepReport { stopped: true, ..StepReport::default() };
     }

@@ -3,6 +3,7 @@
 //! The half-space below it has no far side and no edges, so a point needs no broad phase: its height is the gap. The plane
 //! moves within a frame from where the last one left it, as colliders do (§2.4).
 
+pub mod carried;
 mod fours;
 pub mod pass;
 

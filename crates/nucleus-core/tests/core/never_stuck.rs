@@ -258,6 +258,26 @@ fn an_inseparable_pair_is_counted_once_per_step_whatever_the_number_of_passes() 
     assert_eq!((report.pairs_unresolved, report.pairs_reverted), (1, 0), "{report:?}");
 }
 
+#[test]
+fn points_that_pins_carry_through_the_ground_are_unresolved_pairs_in_that_frame() {
+    let sheet = grid(2, 2, Vec3::x(), Vec3::z());
+    let mut solver = Solver::<f32>::new(one_cloth(sheet.clone(), LINKS), 1);
+    let mut input = frame(1, physical(24.0));
+    input.cloths[0] = ClothFrame { thickness: 0.01, ..still() };
+    input.plane = Some(ground(0.0));
+    let mut heights = [0.0; 4];
+    let mut carried = |to: [f64; 4]| {
+        input.pins = pins(&sheet, 0..4);
+        for (pin, (height, to)) in input.pins.iter_mut().zip(heights.iter_mut().zip(to)) {
+            (pin.start.y, pin.end.y, *height) = (*height, to, to);
+        }
+        solver.step(&input, &mut ()).pairs_unresolved
+    };
+    // Two go through it, and on, and come back; one rests on it but for rounding.
+    let moved = [[-0.1, 0.1, -1e-6, -0.01], [-0.2, 0.0, -1e-6, -0.02], [0.1, 0.0, 0.0, 0.1]];
+    assert_eq!(moved.map(&mut carried), [2, 0, 0]);
+}
+
 // The ground is certified as colliders are: cloth that has no room above it is unresolved, and does not slip below unseen.
 #[test]
 fn cloth_that_a_plate_presses_through_the_ground_is_counted_as_unresolved() {
