@@ -1,8 +1,8 @@
 //! Binary glTF 2.0: a mesh per object, a morph target per sample, and an animation of the target weights.
 //!
 //! The weight of target k is 1 at sample k, and all weights are 0 at sample 0. Between samples the weights are linear,
-//! so points move along straight lines, as in a point cache. Normals are morphed with the positions. Texture coordinates
-//! are exported where each point has one: a seam would need two points. Each camera is a node with its motion.
+//! so points move along straight lines, as in a point cache. Normals are morphed with the positions. A point has more
+//! than one vertex at hard edges and along seams of texture coordinates. Each camera is a node with its motion.
 
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -13,8 +13,8 @@ use serde_json::{Value, json};
 use crate::clip::{Clip, extent};
 use crate::error::ExportError;
 use crate::materials;
-use crate::normals::normals;
 use crate::output::{OutFile, Output};
+use crate::vertices::Vertices;
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
@@ -158,16 +158,15 @@ fn describe_mesh<R: Read + Seek>(
     moves: bool,
     document: &mut Document,
 ) -> Result<Value, ExportError> {
-    let base = clip.positions(object, 0)?;
-    let has_uvs = uvs_of_points(clip, object).is_some();
-    let info = clip.object_at(object, 0)?;
-    let corners = 3 * info.faces.triangles().count();
+    let vertices = vertices(clip, object);
+    let base = vertices.gather(&clip.positions(object, 0)?);
+    let has_uvs = clip.texture_coordinates(object).is_some();
+    let corners = 3 * vertices.faces.triangles().count();
     let mut primitive = json!({ "mode": if corners > 0 { TRIANGLES } else { POINTS } });
     if corners > 0 {
         primitive["indices"] =
             document.add("SCALAR", UNSIGNED_INT, corners, Some(ELEMENT_ARRAY_BUFFER), Value::Null).into();
     }
-    let name = info.name.clone();
     primitive["material"] = object.into();
     primitive["attributes"] = json!({ "POSITION": document.add_points(&base) });
     if corners > 0 {
@@ -178,11 +177,11 @@ fn describe_mesh<R: Read + Seek>(
         primitive["attributes"]["TEXCOORD_0"] =
             document.add_floats("VEC2", base.len(), Some(ARRAY_BUFFER)).into();
     }
-    let mut mesh = json!({ "name": name });
+    let mut mesh = json!({ "name": clip.object(object).name });
     if moves {
         let (mut targets, mut names) = (Vec::new(), Vec::new());
         for sample in 1..clip.samples().len() {
-            let moved = displacements(clip, object, sample, &base)?;
+            let moved = differences(&vertices.gather(&clip.positions(object, sample)?), &base);
             let mut target = json!({ "POSITION": document.add_points(&moved) });
             if corners > 0 {
                 target["NORMAL"] = document.add_floats("VEC3", base.len(), Some(ARRAY_BUFFER)).into();
@@ -205,17 +204,17 @@ fn write_object<R: Read + Seek>(
     moves: bool,
     file: &mut OutFile,
 ) -> Result<(), ExportError> {
-    let base = clip.positions(object, 0)?;
-    let uvs = uvs_of_points(clip, object).map(<[_]>::to_vec);
-    let faces = clip.object_at(object, 0)?.faces.clone();
-    write_triangles(clip.object_at(object, 0)?, file);
+    let vertices = vertices(clip, object);
+    let base = vertices.gather(&clip.positions(object, 0)?);
+    let has_faces = !vertices.faces.is_empty();
+    vertices.faces.triangles().flatten().for_each(|vertex| file.bytes(&vertex.to_le_bytes()));
     file.floats_le(&base);
-    let rest = normals(&faces, &base);
-    if !faces.is_empty() {
+    let rest = vertices.normals(&base);
+    if has_faces {
         file.floats_le(&rest);
     }
     // The first row of a picture is its top in glTF.
-    for [u, v] in uvs.unwrap_or_default() {
+    for [u, v] in texture_coordinates(clip, object, &vertices) {
         [u, 1.0 - v].iter().for_each(|x| file.bytes(&x.to_le_bytes()));
     }
     if !moves {
@@ -223,10 +222,10 @@ fn write_object<R: Read + Seek>(
     }
     let samples = clip.samples().len();
     for sample in 1..samples {
-        file.floats_le(&displacements(clip, object, sample, &base)?);
-        if !faces.is_empty() {
-            let now = normals(&faces, &clip.positions(object, sample)?);
-            file.floats_le(&differences(&now, &rest));
+        let now = vertices.gather(&clip.positions(object, sample)?);
+        file.floats_le(&differences(&now, &base));
+        if has_faces {
+            file.floats_le(&differences(&vertices.normals(&now), &rest));
         }
     }
     for sample in 0..samples {
@@ -236,10 +235,6 @@ fn write_object<R: Read + Seek>(
         }
     }
     Ok(())
-}
-
-fn write_triangles(object: &ObjectInfo, file: &mut OutFile) {
-    object.faces.triangles().flatten().for_each(|point| file.bytes(&point.to_le_bytes()));
 }
 
 fn write_times<R: Read + Seek>(clip: &Clip<R>, file: &mut OutFile) {
@@ -252,24 +247,23 @@ fn times<R: Read + Seek>(clip: &Clip<R>) -> Vec<f32> {
     clip.samples().iter().map(|sample| ((sample.frame_time - begin) / clip.fps()) as f32).collect()
 }
 
-/// Displacement of each point relative to the first sample.
-fn displacements<R: Read + Seek>(
-    clip: &mut Clip<R>,
-    object: usize,
-    sample: usize,
-    base: &[[f32; 3]],
-) -> Result<Vec<[f32; 3]>, ExportError> {
-    Ok(differences(&clip.positions(object, sample)?, base))
-}
-
 fn differences(now: &[[f32; 3]], then: &[[f32; 3]]) -> Vec<[f32; 3]> {
     now.iter().zip(then).map(|(now, then)| std::array::from_fn(|axis| now[axis] - then[axis])).collect()
 }
 
-/// The texture coordinates of an object, where each point has one.
-fn uvs_of_points<'a, R: Read + Seek>(clip: &'a Clip<R>, object: usize) -> Option<&'a [[f32; 2]]> {
-    let uvs = clip.texture_coordinates(object)?;
-    uvs.corners.is_empty().then_some(uvs.values.as_slice())
+/// The vertices of an object, whose topology is constant.
+fn vertices<R: Read + Seek>(clip: &Clip<R>, object: usize) -> Vertices {
+    let uvs = clip.texture_coordinates(object).map_or(&[][..], |uvs| &uvs.corners);
+    Vertices::of(clip.object(object), uvs)
+}
+
+/// The texture coordinates of each vertex; empty without any.
+fn texture_coordinates<R: Read + Seek>(clip: &Clip<R>, object: usize, vertices: &Vertices) -> Vec<[f32; 2]> {
+    let Some(uvs) = clip.texture_coordinates(object) else { return Vec::new() };
+    match uvs.corners.is_empty() {
+        true => vertices.gather(&uvs.values),
+        false => vertices.uvs.iter().map(|&uv| uvs.values[uv as usize]).collect(),
+    }
 }
 
 fn describe_materials<R: Read + Seek>(clip: &Clip<R>) -> Value {

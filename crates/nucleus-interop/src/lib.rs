@@ -24,10 +24,10 @@ mod glb;
 mod materials;
 mod mesh_files;
 mod ncache;
-mod normals;
 mod output;
 mod point_caches;
 mod usd;
+mod vertices;
 mod vtu;
 
 pub use clip::{Clip, Sample, Selection};

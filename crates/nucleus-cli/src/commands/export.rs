@@ -83,9 +83,7 @@ impl clap::ValueEnum for Wanted {
                 "USD with time samples as text, one file: meshes, UVs, normals, materials, cameras"
             }
             Format::Usdc => "the same as binary, for Maya, Houdini and Blender",
-            Format::Glb => {
-                "glTF with morph targets, one file: UVs without seams, normals, materials, cameras"
-            }
+            Format::Glb => "glTF with morph targets, one file: UVs, normals, materials, cameras",
             Format::Vtu => "VTK and ParaView, a file per object and frame",
             Format::Mc => "Maya nCache, 32 bit",
             Format::Mcx => "Maya nCache, 64 bit",

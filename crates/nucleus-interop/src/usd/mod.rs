@@ -10,8 +10,8 @@ use nucleus_cache::{ObjectInfo, ObjectKind};
 use crate::clip::{Clip, Extent, extent};
 use crate::error::ExportError;
 use crate::materials;
-use crate::normals::normals;
 use crate::output::{Output, node_names};
+use crate::vertices::Vertices;
 
 use binary::BinaryStage;
 use camera::write_camera;
@@ -140,10 +140,20 @@ fn write_object<R: Read + Seek>(
     }
     stage.end_samples();
     if is_mesh {
-        stage.begin_samples(&Attribute::of("normal3f[]", "normals").interpolated("vertex"));
+        let mut vertices = Vertices::of(clip.object_at(object, 0)?, &[]);
+        let changes = clip.mesh_changes(object);
+        let are_split = vertices.are_split();
+        let each = if are_split { "faceVarying" } else { "vertex" };
+        stage.begin_samples(&Attribute::of("normal3f[]", "normals").interpolated(each));
         for (index, sample) in samples.iter().enumerate() {
             let positions = clip.positions(object, index)?;
-            let normals = normals(&clip.object_at(object, index)?.faces, &positions);
+            if changes.contains(&index) {
+                vertices = Vertices::smooth(&clip.object_at(object, index)?.faces, positions.len());
+            }
+            let mut normals = vertices.normals(&vertices.gather(&positions));
+            if are_split {
+                normals = vertices.faces.corners().iter().map(|&vertex| normals[vertex as usize]).collect();
+            }
             stage.sample(sample.frame_time, &Value::Vec3s(&normals));
             progress(0.5 + 0.5 * (index + 1) as f64 / steps);
         }
