@@ -230,17 +230,21 @@ fn end_substep<R: CompiledReal>(
     end_push_out(&mut solver.state);
     let end = PassTime { at: f64::from(substep) / f64::from(schedule.substeps), length: substep_length };
     turn_particles(solver, frame, end);
+    // Deaths lay links out anew, which forgets their loads.
+    let has_broken = {
+        let Solver { model, state, contact, links, .. } = &mut *solver;
+        break_links(links, (model, &contact.collider_states), state, frame, end)
+    };
+    if has_broken {
+        let Solver { model, state, links, .. } = &mut *solver;
+        tear_chambers(&model.cloths, &mut state.chambers, links);
+        find_pieces(&mut model.cloths, links);
+    }
     let has_lost_links = age_particles(solver, frame, schedule, substep, counters);
     damp(&solver.model.cloths, &mut solver.state, frame, alternates, substep_length, &solver.pool);
     slow_particles(&solver.model.cloths, &mut solver.state, frame, substep_length);
     let Solver { model, state, contact, links, .. } = solver;
     damp_links(links, (model, &contact.collider_states), state, frame, end);
-    let scene = (&*model, &contact.collider_states[..]);
-    let has_broken = break_links(links, scene, state, frame, end);
-    if has_broken {
-        tear_chambers(&model.cloths, &mut state.chambers, links);
-        find_pieces(&mut model.cloths, links);
-    }
     if has_broken || has_lost_links {
         update_pair_filter(contact, (model, state), links, frame, true);
     }

@@ -118,7 +118,8 @@ impl<R: Real> ContactPoints<'_, R> {
     fn set_ground_states(&self, states: &mut HighestStates<'_>) {
         let grounded = self.model.cloths.iter().zip(&self.contact.ground_materials);
         for (cloth, material) in grounded.filter_map(|(cloth, material)| Some((cloth, material.as_ref()?))) {
-            for row in cloth.points() {
+            let filter = &self.contact.pair_filter;
+            for row in cloth.points().filter(|row| !filter.excludes_ground(*row)) {
                 let thickness = self.rest_gap(material, [row], [R::ONE]);
                 if let Some(height) = self.contact.ground.height(self.state.position(row)) {
                     states.raise_by_gap(row, height / thickness);
@@ -164,6 +165,9 @@ impl<R: Real> ContactPoints<'_, R> {
             let place = Vector3::from(self.state.position(row)) - origin;
             state.bvh.query(&Aabb::new(place.add_scalar(-range), place.add_scalar(range)), |face| {
                 let corners = collider.boundary.triangles[face as usize];
+                if self.contact.pair_filter.excludes_collider(&[row], list.collider, &corners) {
+                    return;
+                }
                 self.set_state([row], corners, list.collider, material, states);
             });
         }
@@ -191,16 +195,9 @@ impl<R: Real> ContactPoints<'_, R> {
         let ours = points.map(|point| self.state.position(point));
         let theirs = collider_points.map(|point| state.point(point, state.now).into());
         let (_, (shares, weights), distance) = shortest_line::<f64, N, M>((ours, theirs));
-        let maps = self.contact.material_maps.of_collider(collider);
-        let thickness = match maps {
-            None => self.rest_gap(material, points, shares.map(R::from_f64)),
-            Some(maps) => {
-                let material = material.scaled(maps.at(collider_points, weights));
-                let most = R::from_f64(material.thickness);
-                let of_points = (points, [], &(shares.map(R::from_f64), []));
-                material.mapped_thickness(&self.contact.material_maps, of_points, most).to_f64()
-            }
-        };
+        let maps = &self.contact.material_maps;
+        let thickness =
+            material.thickness_with_collider(maps, (points, shares), (collider, collider_points, weights));
         states.raise_all_by_gap(points, shares, distance / thickness);
     }
 

@@ -98,12 +98,18 @@ impl<R: Real> Ground<R> {
     }
 
     /// Takes up points whose anchors were set within the frame.
-    pub fn set_anchors(&mut self, points: Range<u32>, anchors: &[[f64; 3]]) {
+    pub fn set_anchors(&mut self, points: Range<u32>, anchors: &[[f64; 3]], filter: &PairFilter) {
         for (heights, plane) in self.heights.iter_mut().zip([self.start, self.end]) {
             let Some(plane) = plane else { continue };
-            for point in points.clone().map(|point| point as usize) {
-                let height = R::from_f64(plane.height(anchors[point]));
-                heights.get_mut(point).into_iter().for_each(|of_point| *of_point = height);
+            for point in points.clone() {
+                let height = match filter.excludes_ground(point) {
+                    true => FAR_ABOVE,
+                    false => plane.height(anchors[point as usize]),
+                };
+                heights
+                    .get_mut(point as usize)
+                    .into_iter()
+                    .for_each(|of_point| *of_point = R::from_f64(height));
             }
         }
     }

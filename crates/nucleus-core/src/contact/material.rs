@@ -236,6 +236,23 @@ impl<R: Real> ContactMaterial<R> {
         if there < max_thickness { there } else { max_thickness }
     }
 
+    /// The contact thickness in metres of a point of an element of cloth with a point of an element of a collider, each with
+    /// the weights of its corners.
+    pub fn thickness_with_collider<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        (points, shares): ([u32; N], [f64; N]),
+        (collider, corners, weights): (usize, [u32; M], [f64; M]),
+    ) -> f64 {
+        let most = R::from_f64(self.thickness);
+        let of_points = (points, [], &(shares.map(R::from_f64), []));
+        match maps.of_collider(collider) {
+            None => self.thickness_at(maps, of_points, most),
+            Some(own) => self.scaled(own.at(corners, weights)).mapped_thickness(maps, of_points, most),
+        }
+        .to_f64()
+    }
+
     /// The sum of both frictions at a contact.
     #[inline(always)]
     pub fn friction_at<const N: usize, const M: usize>(

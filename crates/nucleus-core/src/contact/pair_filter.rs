@@ -81,18 +81,22 @@ impl PairFilter {
     /// Whether an element of cloth and one of a collider do not collide.
     #[inline]
     pub fn excludes_collider(&self, ours: &[u32], collider: usize, theirs: &[u32]) -> bool {
-        if self.cloths.is_empty() {
-            return false;
-        }
-        let points = &self.colliders[collider];
-        let of_collider = theirs.iter().fold([u64::MAX; 2], |all, &point| both(all, points[point as usize]));
-        meet(self.of_cloth(ours), of_collider)
+        self.sides_of_all(ours.iter().copied()).exclude_collider(collider, theirs)
     }
 
     /// Whether a point does not collide with the ground plane.
     #[inline]
     pub fn excludes_ground(&self, point: u32) -> bool {
-        !self.cloths.is_empty() && meet(self.of_cloth(&[point]), self.everything)
+        self.sides_of_all([point].into_iter()).exclude_ground()
+    }
+
+    /// The sides that all of these points belong to, which then do not collide as one element.
+    pub fn sides_of_all(&self, points: impl Iterator<Item = u32>) -> SidesOfAll<'_> {
+        let sides = match self.cloths.is_empty() {
+            true => [0; 2],
+            false => points.fold([u64::MAX; 2], |all, point| both(all, self.cloths[point as usize])),
+        };
+        SidesOfAll { filter: self, sides }
     }
 
     /// Whether two elements have points that are welded to each other.
@@ -102,10 +106,12 @@ impl PairFilter {
     }
 
     fn of_cloth(&self, points: &[u32]) -> Sides {
-        if self.cloths.is_empty() {
-            return [0; 2];
-        }
-        points.iter().fold([u64::MAX; 2], |all, &point| both(all, self.cloths[point as usize]))
+        self.sides_of_all(points.iter().copied()).sides
+    }
+
+    fn of_collider(&self, collider: usize, points: &[u32]) -> Sides {
+        let sides = &self.colliders[collider];
+        points.iter().fold([u64::MAX; 2], |all, &point| both(all, sides[point as usize]))
     }
 
     /// Takes up the points that are welded to others, and whether welds can break. What was welded until now is released.
@@ -176,7 +182,8 @@ impl PairFilter {
                     ExcludedSide::Points(of_cloths, of_colliders) => {
                         for (cloth, point) in of_cloths {
                             let Some(model) = cloths.get(cloth.index()) else { continue };
-                            if point.index() < model.points().len() {
+                            // Particles that are not born yet have a row too.
+                            if point.index() < model.blocks.rows().len() {
                                 mark(&mut self.cloths[model.place(point.index()) as usize]);
                             }
                         }
@@ -191,6 +198,30 @@ impl PairFilter {
                 }
             }
         }
+    }
+}
+
+/// What the points of an object have in common.
+#[derive(Clone, Copy)]
+pub struct SidesOfAll<'a> {
+    filter: &'a PairFilter,
+    sides: Sides,
+}
+
+impl SidesOfAll<'_> {
+    /// Whether they do not collide with an element of cloth.
+    pub fn exclude(&self, theirs: &[u32]) -> bool {
+        meet(self.sides, self.filter.of_cloth(theirs))
+    }
+
+    /// Whether they do not collide with an element of a collider.
+    pub fn exclude_collider(&self, collider: usize, theirs: &[u32]) -> bool {
+        !self.filter.cloths.is_empty() && meet(self.sides, self.filter.of_collider(collider, theirs))
+    }
+
+    /// Whether they do not collide with the ground plane.
+    pub fn exclude_ground(&self) -> bool {
+        meet(self.sides, self.filter.everything)
     }
 }
 

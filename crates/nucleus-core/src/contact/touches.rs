@@ -57,7 +57,8 @@ struct TouchFinder<'a, R: Real> {
 impl<R: Real> TouchFinder<'_, R> {
     fn find_on_ground(&mut self, cloth: usize) {
         let Some(material) = &self.contact.ground_materials[cloth] else { return };
-        for point in self.model.cloths[cloth].points() {
+        let filter = &self.contact.pair_filter;
+        for point in self.model.cloths[cloth].points().filter(|point| !filter.excludes_ground(*point)) {
             let Some((normal, height)) = self.contact.ground.at(self.state.position(point), self.end) else {
                 return;
             };
@@ -96,11 +97,17 @@ impl<R: Real> TouchFinder<'_, R> {
         let (mut least, mut nearest) = (reach, None);
         state.bvh.query(&Aabb::new(local.add_scalar(-reach), local.add_scalar(reach)), |face| {
             let corners = triangles[face as usize];
+            if self.contact.pair_filter.excludes_collider(&[point], collider, &corners) {
+                return;
+            }
             let (normal, (_, weights), distance) = shortest_line::<f64, 1, 3>((
                 [place],
                 corners.map(|corner| state.point(corner, self.end).into()),
             ));
-            if distance <= least {
+            let maps = &self.contact.material_maps;
+            let thickness =
+                material.thickness_with_collider(maps, ([point], [1.0]), (collider, corners, weights));
+            if distance <= least && Restitution::touches(distance, thickness) {
                 let travel = |k: usize| state.end[corners[k] as usize] - state.start[corners[k] as usize];
                 let travel: Vector3<f64> = (0..3).map(|k| travel(k) * weights[k]).sum();
                 (least, nearest) = (distance, Some((Vector3::from(normal), travel / self.duration)));

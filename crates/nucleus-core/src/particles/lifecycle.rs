@@ -13,6 +13,8 @@ use crate::input::validation::is_in_range;
 use crate::input::{ClothId, PointId};
 use crate::integrate::aerodynamics::AirForces;
 use crate::math::{Real, Row4};
+use crate::model::Model;
+use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::birth_path::Obstacles;
 use crate::particles::events::spawns_of_collisions;
 use crate::particles::occupancy::OccupancyGrid;
@@ -53,7 +55,7 @@ pub fn age_particles<R: Real>(
             links_changed |= remove_rows(solver, cloth, &kept);
         }
         add_births(solver, index, frame, PassTime { at: end, length: schedule.h }, counters);
-        add_spawned(solver, index, (&spawned, length), counters);
+        add_spawned(solver, index, frame, (&spawned, PassTime { at: end, length }), counters);
     }
     apply_ramps(solver);
     if links_changed {
@@ -98,14 +100,15 @@ fn accelerate<R: Real>(solver: &mut Solver<R>, index: usize, length: f64) {
         .for_each(|at| population.accelerate(at, velocity[first + at].xyz().map(R::to_f64), length));
 }
 
-/// Adds the particles of collision events in a substep of `length` seconds to an object.
+/// Adds the particles of collision events in a substep that ends at `end` to an object.
 fn add_spawned<R: Real>(
     solver: &mut Solver<R>,
     index: usize,
-    (spawned, length): (&[Spawn], f64),
+    frame: &FrameInput,
+    (spawned, end): (&[Spawn], PassTime),
     counters: &mut ContactCounters,
 ) {
-    let Solver { model, state, contact, .. } = solver;
+    let Solver { model, state, contact, pool, .. } = solver;
     let (cloth, mass) = (state.populations[index].cloth(), state.populations[index].birth_mass());
     let object = &mut model.cloths[cloth];
     let (first, row_of) = (object.points().end, object.blocks.rows().start);
@@ -116,7 +119,7 @@ fn add_spawned<R: Real>(
             continue;
         }
         counters.births += 1;
-        let age = spawn.age_of_whole.map_or(0.0, |age| age + length);
+        let age = spawn.age_of_whole.map_or(0.0, |age| age + end.length);
         let (lifespan, velocity) = (spawn.lifespan, spawn.velocity.into());
         if population.add(Newborn { age, lifespan, velocity, touches: true }) {
             let row = row_of + population.len() as u32 - 1;
@@ -129,6 +132,22 @@ fn add_spawned<R: Real>(
     if last > first {
         object.resize(state.populations[index].len());
         begin_contact_of(state, contact, cloth, first..last);
+        begin_fields_of(model, state, cloth, first..last, (frame, end.at), pool);
+    }
+}
+
+/// Fields act on new particles for the rest of the frame.
+fn begin_fields_of<R: Real>(
+    model: &Model<R>,
+    state: &mut State<R>,
+    cloth: usize,
+    rows: Range<u32>,
+    (frame, end): (&FrameInput, f64),
+    pool: &ThreadPool,
+) {
+    if !frame.fields_per_substep {
+        let interval = frame.duration * (1.0 - end).max(f64::EPSILON);
+        update_fields_of((cloth, &model.cloths[cloth]), rows, state, frame, interval, pool);
     }
 }
 
@@ -195,10 +214,7 @@ fn add_births<R: Real>(
     if last > first {
         model.cloths[cloth].resize(living);
         begin_contact_of(state, contact, cloth, first..last);
-        if !frame.fields_per_substep {
-            let interval = frame.duration * (1.0 - end).max(f64::EPSILON);
-            update_fields_of((cloth, &model.cloths[cloth]), first..last, state, frame, interval, pool);
-        }
+        begin_fields_of(model, state, cloth, first..last, (frame, end), pool);
     }
 }
 
@@ -215,7 +231,7 @@ fn begin_contact_of<R: Real>(
     cloth: usize,
     rows: Range<u32>,
 ) {
-    contact.ground.set_anchors(rows.clone(), &state.anchor);
+    contact.ground.set_anchors(rows.clone(), &state.anchor, &contact.pair_filter);
     rows.clone().for_each(|row| contact.invalidate_bounds(row as usize));
     contact.active_windows[cloth] = TimeInterval::EXPIRED;
     if let Some(contacts) = &mut contact.cloth_contacts {
@@ -231,7 +247,8 @@ fn remove_rows<R: Real>(solver: &mut Solver<R>, cloth: usize, kept: &[u32]) -> b
     state.close_up_particles(&points, kept);
     model.cloths[cloth].resize(kept.len());
     renumber_contacts(contact, cloth, points.clone(), kept);
-    contact.ground.set_anchors(points.start..points.start + kept.len() as u32, &state.anchor);
+    let left = points.start..points.start + kept.len() as u32;
+    contact.ground.set_anchors(left, &state.anchor, &contact.pair_filter);
     let number = |point: PointId| kept.binary_search(&point.0).ok().map(|at| PointId(at as u32));
     links.close_up(ClothId(cloth as u32), number, (&model.cloths, &model.colliders))
 }

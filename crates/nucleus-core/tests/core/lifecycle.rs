@@ -3,8 +3,8 @@
 use crate::scenes::{LINKS, Vec3, frame, grid, ground, physical, pins, sphere, still};
 use nucleus_core::{
     Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements,
-    FrameInput, Mass, ModelBuilder, Particle, Particles, Pin, PointId, ResistanceModel, RestoreError,
-    SelfCollision, Solver, StateView, Surface,
+    ExcludedSide, Exclusion, FrameInput, Mass, ModelBuilder, Particle, Particles, Pin, PointId,
+    ResistanceModel, RestoreError, SelfCollision, Solver, StateView, Surface,
 };
 
 const BEADS: ClothId = ClothId(0);
@@ -163,6 +163,36 @@ fn particles_die_at_their_age_and_the_others_keep_their_order() {
         assert!(ages(&solver).iter().all(|age| (age.age - now).abs() < 1e-12));
     }
     assert_eq!(deaths, [0, 1, 1, 0, 2, 0]);
+}
+
+#[test]
+fn particles_that_do_not_collide_with_the_ground_fall_through_it_whoever_dies_or_is_born() {
+    let first: Vec<Vec3> = (0..8).map(|k| Vec3::new(f64::from(k), 0.06, 0.0)).collect();
+    let lifespans: Vec<f64> = (0..8).map(|k| if k % 2 == 0 { f64::from(k) / 64.0 } else { 10.0 }).collect();
+    let mut solver = solver(room(16, &first, &lifespans, 1.0), 1);
+    let all = ExcludedSide::Points((0..16).map(|k| (BEADS, PointId(k))).collect(), Vec::new());
+    let exclusion = Exclusion { sides: [all, ExcludedSide::Everything] };
+    let mut input = FrameInput {
+        cloths: vec![balls(0.05)],
+        plane: Some(ground(0.0)),
+        exclusions: vec![exclusion.into()],
+        ..frame(4, physical(96.0))
+    };
+    let mut reports = Vec::new();
+    for number in 0..6 {
+        let at = Vec3::new(-1.0 - f64::from(number), 0.06, 0.0);
+        input.births = vec![birth(0.4, at, Vec3::y() * -2.0, 10.0)];
+        reports.push(solver.step(&input, &mut ()));
+    }
+    assert!(
+        reports.iter().any(|report| report.deaths > 0) && reports.iter().all(|report| report.contacts == 0)
+    );
+    let fallen = |time: f64| 0.06 - 9.81 / 2.0 * time * time;
+    for (place, particle) in places(&solver).iter().zip(ages(&solver)) {
+        let own = if particle.id < 8 { 0.0 } else { -2.0 };
+        let expected = fallen(particle.age) + own * particle.age;
+        assert!((place.y - expected).abs() < 0.02, "{particle:?} at {place:?}, not {expected}");
+    }
 }
 
 #[test]

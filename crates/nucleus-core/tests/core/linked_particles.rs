@@ -3,8 +3,8 @@
 use crate::scenes::links::{PHYSICAL, point, tied};
 use crate::scenes::{Vec3, still};
 use nucleus_core::{
-    Birth, Cloth, ClothFrame, ClothId, ClothLists, ConstraintFrame, FrameInput, Link, LinkMethod, LinkSide,
-    Mass, ModelBuilder, Particles, Solver, StateView, Surface,
+    Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, ConstraintFrame, FrameInput, Link,
+    LinkMethod, LinkSide, Mass, ModelBuilder, Particles, Solver, StateView, Surface,
 };
 use proptest::prelude::*;
 
@@ -70,6 +70,25 @@ fn a_link_follows_its_particle_when_others_die_and_goes_with_it() {
                 "{other:?}"
             );
         }
+    }
+}
+
+#[test]
+fn glue_breaks_in_a_substep_in_which_other_particles_die() {
+    // One of them dies in each of the substeps of the first four frames, or none.
+    for dies in [false, true] {
+        let first: Vec<Vec3> = (0..9).map(|k| Vec3::x() * f64::from(k)).collect();
+        let lifespan = |k: u32| if dies { f64::from(k) * COUNT_PERIOD / 2.0 } else { f64::INFINITY };
+        let mut lifespans: Vec<f64> = (1..9).map(lifespan).collect();
+        lifespans.insert(0, f64::INFINITY);
+        let mut solver = Solver::<f32>::new(model(9, &first, &lifespans, Vec3::y()), 1);
+        let hold = Link::new([point(0, 0), LinkSide::Space(first[0])], 0.0);
+        let mut input = linked(vec![Link { glue: 0.01, ..hold }], LinkMethod::Weld);
+        input.constraints[0].can_break = true;
+        input.gravity = -10.0 * Vec3::y();
+        (0..4).for_each(|_| step(&mut solver, &mut input));
+        // It weighs ten newtons, and the glue carries one per metre.
+        assert!(particles(&solver)[0].y < -0.05, "{dies}: {:?}", particles(&solver));
     }
 }
 

@@ -247,9 +247,11 @@ impl LiquidSolver {
             [place.x as f32, place.y as f32, place.z as f32]
         };
         let factors = &contact.material_maps.max_thickness_factor;
+        // A liquid is one element: it is excluded from what all of its particles are.
+        let excluded = contact.pair_filter.sides_of_all(cloths[step.cloth].points());
         if let Some(ground) = frame.plane.as_ref()
             && let Some(material) = ContactMaterial::<R>::for_ground(own, ground, factors[step.cloth])
-            && let Some(plane) = contact.ground.in_step(step.span)
+            && let Some(plane) = contact.ground.in_step(step.span).filter(|_| !excluded.exclude_ground())
         {
             let first = cloths[step.cloth].points().start;
             let above = plane.height_now(first, state.displacement[first as usize].xyz()).to_f64();
@@ -273,7 +275,9 @@ impl LiquidSolver {
             let collider = &contact.collider_states[at];
             let places =
                 |triangle: &[u32; 3]| triangle.map(|point| place(collider.point(point, step.span.to)));
-            let triangles = model.boundary.triangles.iter().map(places);
+            let triangles = model.boundary.triangles.iter();
+            let triangles =
+                triangles.filter(|corners| !excluded.exclude_collider(at, &corners[..])).map(places);
             match (collider.moves, region) {
                 (true, _) => triangles.for_each(|triangle| walls.cover(triangle, None, material, bounds)),
                 (false, Some(region)) => {
@@ -308,16 +312,15 @@ impl LiquidSolver {
                     // Up to where the liquid rests on it, which begins half a rest distance before its particles.
                     None => (material.distance - 0.5).max(MIN_BALL),
                 };
-                model
-                    .points()
-                    .for_each(|row| walls.particle(place(at_end(row)), corner(row), radius, bounds));
+                let rows = model.points().filter(|row| !excluded.exclude(&[*row]));
+                rows.for_each(|row| walls.particle(place(at_end(row)), corner(row), radius, bounds));
                 continue;
             }
             let first = walls.corners().len() as u32;
             for row in model.points() {
                 walls.corner(corner(row));
             }
-            for triangle in &model.boundary.triangles {
+            for triangle in model.boundary.triangles.iter().filter(|rows| !excluded.exclude(&rows[..])) {
                 let corners = triangle.map(|row| first + row - model.points().start);
                 let triangle = triangle.map(|row| place(at_end(row)));
                 walls.cover(triangle, Some(corners), material, bounds);

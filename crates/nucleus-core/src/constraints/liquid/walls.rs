@@ -251,6 +251,7 @@ impl Samples {
         self.places.clear();
         self.samples.clear();
         self.sorted.clear();
+        self.balls.clear();
         self.max_offset = 0.0;
     }
 
