@@ -263,7 +263,8 @@ impl CollisionFilter {
         points.iter().fold([u64::MAX; 2], |all, &point| both(all, self.sides[point as usize]))
     }
 
-    fn excludes(&self, a: &[u32], b: &[u32]) -> bool {
+    /// Whether elements with these points are not tested because a weld or an exclusion says so.
+    pub fn excludes(&self, a: &[u32], b: &[u32]) -> bool {
         let cluster = |point: &u32| self.clusters[*point as usize];
         let are_joined = || a.iter().any(|p| b.iter().any(|q| cluster(p) == cluster(q)));
         !self.clusters.is_empty() && are_joined()

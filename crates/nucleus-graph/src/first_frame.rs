@@ -192,7 +192,11 @@ fn warn_of_intersections(scene: &Scene, program: &Program, findings: &mut Findin
             let Some(point) = start(program, cloth.kind).first() else { continue };
             let is_led_out =
                 matches!(collider.kind, ObjectKind::Collider(id) if leads_out.get(id.index()) == Some(&true));
-            let collides = filter.is_tested(a, b) && !pairs.contains_key(&(a, b));
+            let own = [world.points_of(a).start as u32];
+            let corners = |corner: u32| world.points_of(b).start as u32 + corner;
+            let is_excluded =
+                || collider.faces.triangles().all(|face| filter.excludes(&own, &face.map(corners)));
+            let collides = filter.is_tested(a, b) && !pairs.contains_key(&(a, b)) && !is_excluded();
             if collides && is_led_out && is_inside(point, start(program, collider.kind), &collider.faces) {
                 report_inside(scene, cloth, collider, findings);
             }

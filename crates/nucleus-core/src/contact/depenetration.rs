@@ -28,7 +28,8 @@ pub struct Depenetration {
     pub points: Vec<(u32, u32)>,
     /// Points found behind a face since the last inside test.
     pub suspects: Vec<u32>,
-    /// Whether the starting positions have been tested, where a point may be far from any face.
+    /// Whether the positions have been tested at which contact with full strength began, where a point may be far from any
+    /// face.
     has_begun: bool,
 }
 
@@ -58,10 +59,16 @@ impl Depenetration {
         self.points.binary_search_by_key(&point, |&(point, _)| point).ok().map(|at| self.points[at].1)
     }
 
-    /// Forgets all points: they stay where they are.
+    /// Forgets all points: they stay where they are until contact begins again.
     pub fn clear(&mut self) {
         self.points.clear();
         self.suspects.clear();
+        self.has_begun = false;
+    }
+
+    /// Tests all points again, as where contact begins.
+    pub fn begin_again(&mut self) {
+        self.has_begun = false;
     }
 
     /// Renumbers points; forgets those without a number. Numbers keep their order.
@@ -71,19 +78,20 @@ impl Depenetration {
         self.suspects = std::mem::take(&mut self.suspects).into_iter().filter_map(number).collect();
     }
 
-    /// Whether the starting positions have been tested.
+    /// Whether the positions have been tested at which contact began.
     pub fn has_begun(&self) -> bool {
         self.has_begun
     }
 
     /// Forgets all points once a time step has found those that are still inside, which follow. `material` is that of
     /// the two, if they collide.
-    pub fn begin_points<R>(&mut self, material: Option<&ContactMaterial<R>>) {
+    pub fn begin_points<R: Real>(&mut self, material: Option<&ContactMaterial<R>>) {
         self.points.clear();
-        self.has_begun |= material.is_some_and(|material| material.depenetrates);
+        self.has_begun |=
+            material.is_some_and(|material| material.depenetrates && material.has_full_strength());
     }
 
-    /// Suspects all points that start in the bounding box of a closed collider.
+    /// Suspects all points that are in the bounding box of a closed collider where contact with full strength begins.
     pub fn suspect_start<R: Real>(
         &mut self,
         points: Range<u32>,
@@ -91,21 +99,24 @@ impl Depenetration {
         state: &ColliderState,
         step: &ColliderStep<'_, R>,
     ) {
-        if std::mem::replace(&mut self.has_begun, true) || collider.pseudonormals.is_none() {
+        if self.has_begun || !step.material.has_full_strength() || collider.pseudonormals.is_none() {
             return;
         }
+        self.has_begun = true;
         let [low, high] = state.bounds(step.time.start);
         let is_in = |place: Point| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis]);
         self.suspects.extend(points.filter(|&point| is_in(step.start_position(point))));
     }
 
-    /// Runs the inside test for all points that are inside or suspected, at the start of the step. Calls `freed`
-    /// with each point that was inside and is outside now.
+    /// Runs the inside test for all points that are inside or suspected, at the start of the step, but for those that are
+    /// `excluded` from the face through which they would leave. Calls `freed` with each point that was inside and is outside
+    /// now.
     pub fn update<R: Real>(
         &mut self,
         collider: &ColliderModel,
         state: &ColliderState,
         step: &ColliderStep<'_, R>,
+        excluded: impl Fn(u32, [u32; 3]) -> bool,
         mut freed: impl FnMut(u32),
     ) {
         let before = Self { points: std::mem::take(&mut self.points), ..Self::default() };
@@ -116,7 +127,8 @@ impl Depenetration {
         for point in suspects.drain(..).filter(|&point| step.has_full_strength(point)) {
             let place = step.start_position(point);
             let last = before.exit_of(point);
-            let face = exit_face(place, last, collider, state, step.time.start);
+            let face = exit_face(place, last, collider, state, step.time.start)
+                .filter(|&face| !excluded(point, collider.boundary.triangles[face as usize]));
             points.extend(face.map(|face| (point, face)));
             if face.is_none() && last.is_some() {
                 freed(point);

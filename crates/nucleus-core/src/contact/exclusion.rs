@@ -38,6 +38,13 @@ pub fn update_pair_filter<R: Real>(
             contact.invalidate_bounds(row);
         }
     }
+    // What was excluded until now may be inside a collider.
+    for list in &mut contact.collider_contacts {
+        let mut points = model.cloths[list.cloth].points();
+        if all || points.any(|row| contact.pair_filter.differs_at(&before, row as usize)) {
+            list.depenetration.begin_again();
+        }
+    }
     // What was welded and excluded until now may intersect.
     if let Some(cloth_contacts) = contact.cloth_contacts.as_mut().filter(|_| links_changed) {
         for (is_due, model) in cloth_contacts.untangling.is_search_due.iter_mut().zip(&model.cloths) {

@@ -177,7 +177,7 @@ impl<R: Real> ContactMaterial<R> {
             (
                 material.thickness,
                 material.adhesion_range,
-                material.depenetrates,
+                material.depenetrates && material.has_full_strength(),
                 material.elements,
                 material.edges,
             )
@@ -205,7 +205,13 @@ impl<R: Real> ContactMaterial<R> {
     /// Whether collisions are carried out in part only: the two may then pass through each other.
     #[inline(always)]
     pub fn is_partial(&self, maps: &MaterialMaps<R>) -> bool {
-        !maps.strength.is_empty() || self.strength[0] < R::ONE || self.strength[1] < R::ONE
+        !maps.strength.is_empty() || !self.has_full_strength()
+    }
+
+    /// Whether collisions are carried out in full, but for vertex maps.
+    #[inline(always)]
+    pub fn has_full_strength(&self) -> bool {
+        self.strength[0] >= R::ONE && self.strength[1] >= R::ONE
     }
 
     /// The contact thickness at a contact in metres, `max_thickness` at most.

@@ -107,8 +107,12 @@ fn begin_colliders<R: Real>(
 ) {
     for at in contact.lists_of(cloth) {
         let collider = contact.collider_contacts[at].collider;
-        let Some(material) = contact.collider_materials_of(cloth)[collider] else { continue };
+        let material = contact.collider_materials_of(cloth)[collider];
         let list = &mut contact.collider_contacts[at];
+        let Some(material) = material else {
+            list.depenetration.clear();
+            continue;
+        };
         if list.is_near {
             let times = now.span.times();
             contact.collider_states[collider].fit_boxes(&model.colliders[collider], times, pool);
@@ -131,7 +135,9 @@ fn collect_results<R: Real>(
     let ContactSystem { collider_contacts, collider_materials, free_tasks, free_gap, .. } = contact;
     let lists = &mut collider_contacts[lists];
     for list in lists.iter_mut() {
-        list.depenetration.begin_points(collider_materials[[cloth, list.collider]].as_ref());
+        // A collider that is not near has not been tested.
+        let material = collider_materials[[cloth, list.collider]].as_ref().filter(|_| list.is_near);
+        list.depenetration.begin_points(material);
     }
     for near in free_tasks[..tasks].iter_mut().filter_map(|task| task.get_mut().ok()) {
         counters.add(&near.counters);

@@ -15,6 +15,7 @@ mod fields;
 mod folds;
 mod free_points;
 mod inlined_kernels;
+mod inside_colliders;
 mod invalid_input;
 mod invalid_particles;
 mod laws;

@@ -47,7 +47,8 @@ impl EvaluationInterval<'_> {
 
     fn field(&self, source: &FieldSource, seconds: f64) -> Field {
         let placements = [&self.from, &self.to].map(|moment| moment.placement(source.node));
-        let node = FieldNode { id: source.node, to: &self.to, placement: placements[1] };
+        let time = self.to.frame() / self.fps;
+        let node = FieldNode { id: source.node, to: &self.to, time, placement: placements[1] };
         let travel = placements[1].offset - placements[0].offset;
         let metre = self.nucleus.units.length(1.0);
         // In Maya the weight of objects other than particles is 1.
@@ -67,6 +68,8 @@ impl EvaluationInterval<'_> {
 struct FieldNode<'a> {
     id: NodeId,
     to: &'a EvalContext<'a>,
+    /// The time in seconds.
+    time: f64,
     placement: Affine,
 }
 
@@ -152,7 +155,7 @@ impl FieldNode<'_> {
         let turned = |v: Vector3<f64>| unit(self.placement.linear * v);
         // Detail is a second octave of the noise.
         let detail = self.number(&volume_axis_field::DETAIL_TURBULENCE);
-        let time = self.number(&volume_axis_field::TURBULENCE_SPEED) * self.to.frame() / 24.0;
+        let time = self.number(&volume_axis_field::TURBULENCE_SPEED) * self.time;
         let shape = self.volume(metre).map(|volume| volume.shape);
         let has_center = matches!(shape, None | Some(VolumeShape::Cube | VolumeShape::Sphere));
         let has_axis = !matches!(shape, Some(VolumeShape::Cube | VolumeShape::Sphere));

@@ -162,6 +162,12 @@ impl Compiler<'_> {
 }
 
 impl EvaluationInterval<'_> {
+    /// The share of the velocity that particles keep over the interval, by that of a frame.
+    fn conserved(&self, of_frame: f64) -> f64 {
+        let frames = self.to.frame() - self.from.frame();
+        if frames == 1.0 { of_frame } else { of_frame.clamp(0.0, 1.0).powf(frames) }
+    }
+
     /// The attributes of particles in a frame.
     pub(super) fn particle_frame(&self, node: NodeId) -> ClothFrame {
         let number = |key: &Key<f64>| self.to.get(node, key);
@@ -198,7 +204,7 @@ impl EvaluationInterval<'_> {
             point_field: self.point_field(node, radius),
             wind_field: self.wind_field(node),
             liquid,
-            conserve: number(&particle::CONSERVE),
+            conserve: self.conserved(number(&particle::CONSERVE)),
             rotation_friction: number(&n_particle::ROTATION_FRICTION),
             rotation_damp: number(&n_particle::ROTATION_DAMP),
             damp: number(&n_particle::DAMP),

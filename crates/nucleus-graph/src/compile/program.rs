@@ -115,6 +115,8 @@ pub(crate) struct EvaluationInterval<'p> {
     pub(super) to: EvalContext<'p>,
     /// Length in seconds of animation time.
     pub(super) seconds: f64,
+    /// Frames per second.
+    pub(super) fps: f64,
     /// The budget that `autoEvaluations` chose.
     pub(super) budget: Option<f64>,
     /// It begins at or before the start frame: objects are in their initial state.
@@ -279,9 +281,10 @@ impl Program {
         let nucleus = &self.data.nuclei[nucleus];
         let graph = &self.data.graph;
         let [from, to] = frames.map(|frame| graph.at(frame));
-        let seconds = elapsed / self.data.time.fps;
+        let fps = self.data.time.fps;
+        let seconds = elapsed / fps;
         let is_first = frames[0] <= nucleus.start as f64;
-        EvaluationInterval { nucleus, graph, from, to, seconds, budget, is_first, is_discontinuous }
+        EvaluationInterval { nucleus, graph, from, to, seconds, fps, budget, is_first, is_discontinuous }
     }
 
     /// The nucleus of a cloth, by its index, and the id of the cloth in that nucleus.

@@ -155,6 +155,9 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
         let material = collider_materials[[cloth, collider]];
         let Some(material) = material.filter(|_| list.is_near) else {
             list.clear();
+            if material.is_none() {
+                list.depenetration.clear();
+            }
             continue;
         };
         collider_states[collider].fit_boxes(&colliders[collider], interval, pool);
@@ -185,7 +188,10 @@ fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
         .run(list, pool);
         if material.depenetrates {
             list.depenetration.suspect_start(cloth.points(), collider, state_of, step);
-            list.depenetration.update(collider, state_of, step, |point| freed.push(point));
+            let excluded = |point: u32, corners: [u32; 3]| {
+                pair_filter.excludes_collider(&[point], list.collider, &corners)
+            };
+            list.depenetration.update(collider, state_of, step, excluded, |point| freed.push(point));
         } else {
             list.depenetration.clear();
         }

@@ -19,6 +19,11 @@ pub(super) const MATCH: i32 = 6;
 pub(super) const TEARABLE: i32 = 7;
 pub(super) const DISABLE_COLLISION: i32 = 8;
 pub(super) const EXCLUDE_PAIRS: i32 = 9;
+
+/// Whether a kind is there to exclude collisions.
+pub(super) fn excludes(kind: i32) -> bool {
+    matches!(kind, DISABLE_COLLISION | EXCLUDE_PAIRS)
+}
 /// `constraintRelation: objectToConstraint`.
 pub(super) const TO_SPACE: i32 = 0;
 /// `constraintMethod: weld`.

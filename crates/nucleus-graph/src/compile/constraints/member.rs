@@ -76,6 +76,8 @@ pub(crate) struct Member {
     pub(super) maps: [Vec<f64>; 3],
     /// The name of the object.
     pub(crate) name: String,
+    /// How many particles there may be at a time of a whole object of which they come and go.
+    pub(super) capacity: Option<u32>,
 }
 
 impl Member {

@@ -82,9 +82,7 @@ impl Compiler<'_> {
         let pulls = bends
             || used(&con::STRENGTH)
             || used(&con::TANGENT_STRENGTH)
-            || values.choice(&con::CONSTRAINT_METHOD) == 0
-                && values.kind != kinds::DISABLE_COLLISION
-                && values.kind != kinds::EXCLUDE_PAIRS;
+            || values.choice(&con::CONSTRAINT_METHOD) == 0 && !kinds::excludes(values.kind);
         let excludes = values.toggle(&con::EXCLUDE_COLLISIONS);
         let breaks = |glue: &f64| *glue < 1.0;
         let can_break = values.ever(&con::GLUE_STRENGTH, |glue| glue < 1.0)
@@ -263,7 +261,9 @@ impl Compiler<'_> {
             _ => Vec::new(),
         };
         self.name_selection([constraint, object], &elements, kind, &chosen);
-        if chosen.is_empty() {
+        let capacity = self.capacity_of(component, target);
+        let excludes = kinds::excludes(Values::new(&self.start, constraint).kind);
+        if chosen.is_empty() && !(excludes && capacity.is_some()) {
             return None;
         }
         let tearing = self.tearing_of(target);
@@ -299,7 +299,17 @@ impl Compiler<'_> {
             scalars,
             maps,
             name: self.scene.graph.node(object).name().to_owned(),
+            capacity,
         })
+    }
+
+    /// The room for particles of a whole object of which they come and go.
+    fn capacity_of(&self, component: NodeId, target: MemberObject) -> Option<u32> {
+        let is_whole =
+            self.scene.graph.node(component).get(&n_component::COMPONENT_TYPE) == n_component::OBJECT;
+        let MemberObject::Cloth(cloth) = target else { return None };
+        let particles = self.program.model.cloths()[cloth.index()].particles.as_ref();
+        particles.filter(|_| is_whole).map(|particles| particles.capacity as u32)
     }
 
     /// The faces and the number of points of an object as it was given: the elements of a mesh that can tear are numbered so.
@@ -450,11 +460,14 @@ fn exclusion(values: &Values<'_>, members: &[Member]) -> Exclusion {
     let side = |members: &[Member]| {
         let (mut cloths, mut colliders) = (Vec::new(), Vec::new());
         for member in members {
-            for (point, _) in member.points() {
-                match member.object {
-                    MemberObject::Cloth(cloth) => cloths.push((cloth, PointId(point))),
-                    MemberObject::Collider(collider) => colliders.push((collider, PointId(point))),
-                }
+            let points = match member.capacity {
+                Some(capacity) => (0..capacity).collect(),
+                None => member.points().into_iter().map(|(point, _)| point).collect::<Vec<_>>(),
+            };
+            let points = points.into_iter().map(PointId);
+            match member.object {
+                MemberObject::Cloth(cloth) => cloths.extend(points.map(|point| (cloth, point))),
+                MemberObject::Collider(collider) => colliders.extend(points.map(|point| (collider, point))),
             }
         }
         ExcludedSide::Points(cloths, colliders)
