@@ -162,6 +162,9 @@ fn twist<R: Real>(surface: &Surface, face: [u32; 4], place: impl Fn(u32) -> u32)
     Some(HingeRow::new(surface, points, weights.map(|weight| weight / size * (2.0 / area).sqrt()), place))
 }
 
+/// Largest weight of a hinge: beyond, sums of weights overflow in single precision.
+const MAX_WEIGHT: f64 = 1e30;
+
 /// The weights of Bergou et al. 2006, from cotangents of the angles at the edge; `None` where an angle is degenerate.
 pub(super) fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f64; 4]> {
     let cotangent = |u: Vector3<f64>, v: Vector3<f64>| u.dot(&v) / u.cross(&v).norm();
@@ -169,7 +172,7 @@ pub(super) fn bending_weights([x0, x1, x2, x3]: [Vector3<f64>; 4]) -> Option<[f6
     let at_0 = [cotangent(edge, x2 - x0), cotangent(edge, x3 - x0)];
     let at_1 = [cotangent(-edge, x2 - x1), cotangent(-edge, x3 - x1)];
     let weights = [at_1[0] + at_1[1], at_0[0] + at_0[1], -at_0[0] - at_1[0], -at_0[1] - at_1[1]];
-    weights.iter().all(|weight| weight.is_finite()).then_some(weights)
+    weights.iter().all(|weight| weight.abs() < MAX_WEIGHT).then_some(weights)
 }
 
 impl<R: Real, const N: usize> HingeRow<R, N> {
@@ -391,6 +394,20 @@ mod tests {
             let nu = -1.0 / 3.0;
             let plate = (p * p + r * r + 2.0 * nu * p * r + 2.0 * (1.0 - nu) * q * q) / 2.0;
             assert!((found / plate - 1.0).abs() < 1e-9, "{:?}: {found} for {plate}", [p, q, r]);
+        }
+    }
+
+    #[test]
+    fn a_hinge_of_slivers_has_weights_of_single_precision_or_none() {
+        for height in [1e-3, 1e-20, 1e-28, 1e-30, 1e-40, 0.0] {
+            let corner = |x: f64, y: f64| Vector3::new(x, y, 0.0);
+            let points = [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.5, height), corner(0.5, -height)];
+            let weights = bending_weights(points);
+            assert!(
+                weights.is_none_or(|all| all.iter().all(|&weight| (weight as f32).is_finite())),
+                "{height}"
+            );
+            assert_eq!(weights.is_some(), height > 1e-29, "{height}");
         }
     }
 

@@ -44,7 +44,8 @@ fn noise(place: Vector3<f64>) -> Vector3<f64> {
 
 /// Smooth noise of mean zero, a lattice point per unit: each component between -1 and 1.
 pub fn lattice_noise(place: Vector3<f64>) -> Vector3<f64> {
-    let low = place.map(f64::floor);
+    // Farther out places have no fraction.
+    let low = place.map(|x| x.floor().clamp(-1e18, 1e18));
     let share = (place - low).map(|t| t * t * t * (t * (t * 6.0 - 15.0) + 10.0));
     let cell = low.map(|x| x as i64);
     let mut sum = Vector3::zeros();

@@ -70,8 +70,10 @@ pub enum BuildError {
     /// The mesh has no points at all.
     #[error("the mesh has no points")]
     NoPoints,
-    /// Particles that are born and die have faces, or a lifespan that is negative or NaN.
-    #[error("particles that are born and die have no faces, and lifespans of at least 0 s")]
+    /// Particles that are born and die have faces, a lifespan that is negative or NaN, or a number that is not below 2⁶³.
+    #[error(
+        "particles that are born and die have no faces, lifespans of at least 0 s, and numbers below 2^63"
+    )]
     BadParticles,
     /// More particles at the start than the capacity, or no capacity.
     #[error("there are {points} particles at the start, and a capacity of {capacity}")]

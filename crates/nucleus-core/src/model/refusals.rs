@@ -79,6 +79,7 @@ pub fn check_particles(surface: &Surface, particles: &Particles) -> Result<(), B
     }
     if !particles.ramps.iter().all(ParticleRamp::is_valid)
         || particles.ages.iter().any(|age| !age.is_finite())
+        || particles.ids.iter().any(|&id| id >= 1 << 63)
         || !surface.faces.is_empty()
         || particles.lifespans.iter().any(|lifespan| lifespan.is_nan() || *lifespan < 0.0)
     {

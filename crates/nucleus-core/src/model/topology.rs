@@ -47,14 +47,14 @@ struct Line {
 pub fn stretch_links(surface: &Surface, with_cross_links: bool) -> Vec<Link> {
     let mut links = merged(surface, sides(surface, with_cross_links));
     if with_cross_links {
-        links.extend(merged(surface, diagonals(surface, strip_of_diagonal)));
+        links.extend(merged(surface, diagonals(surface, |face| strips_of_diagonals(surface, face))));
     }
     links
 }
 
 /// The cross links of quads alone, each of a strip as wide as the link is long: the links of `shearResistance`.
 pub fn shear_links(surface: &Surface) -> Vec<Link> {
-    let mut links = merged(surface, diagonals(surface, |_, _, _| 0.0));
+    let mut links = merged(surface, diagonals(surface, |_| |_| 0.0));
     links.iter_mut().for_each(|link| link.slenderness = 1.0);
     links
 }
@@ -81,10 +81,11 @@ fn sides(surface: &Surface, with_cross_links: bool) -> Vec<Line> {
         // brace each other, and share it three times.
         let without_cross_links = if face.len() == 3 { area } else { 2.0 * area / face.len() as f64 };
         let cell = (with_cross_links && face.len() == 4).then(|| Cell::of(surface, face));
+        let polygon = (with_cross_links && face.len() > 4).then(|| Polygon::of(surface, face));
         for (k, ends) in around(face).enumerate() {
-            let strip = match (&cell, face.len()) {
+            let strip = match (&cell, &polygon) {
                 (Some(cell), _) => cell.side(k % 2) * area / 2.0,
-                (None, 5..) if with_cross_links => polygon_strip(surface, face, ends),
+                (None, Some(polygon)) => polygon.strip(surface, ends),
                 _ => without_cross_links,
             };
             sides.push(Line { ends, strip });
@@ -99,21 +100,34 @@ pub(super) fn around(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     face.iter().zip(next).map(|(&p, &q)| [p.min(q), p.max(q)])
 }
 
-fn strip_of_diagonal(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
-    match face.len() {
-        4 => Cell::of(surface, face).diagonal() * polygon_area(surface, face),
-        _ => polygon_strip(surface, face, ends),
-    }
+/// The strip of each line across a face.
+fn strips_of_diagonals<'a>(surface: &'a Surface, face: &'a [u32]) -> impl Fn([u32; 2]) -> f64 + 'a {
+    let of_quad = (face.len() == 4).then(|| Cell::of(surface, face).diagonal() * polygon_area(surface, face));
+    let polygon = Polygon::of(surface, face);
+    move |ends| of_quad.unwrap_or_else(|| polygon.strip(surface, ends))
 }
 
-/// All links of a polygon of five or more corners have the same stiffness, and their strips have three times its area.
-pub(super) fn polygon_strip(surface: &Surface, face: &[u32], ends: [u32; 2]) -> f64 {
-    let pairs = (1..face.len()).flat_map(|k| (0..k).map(move |j| [face[j], face[k]]));
-    let squares: f64 = pairs.map(|pair| distance(surface, pair).powi(2)).sum();
-    if squares > 0.0 {
-        3.0 * polygon_area(surface, face) * distance(surface, ends).powi(2) / squares
-    } else {
-        0.0
+/// A polygon of five or more corners: all of its links have the same stiffness, and their strips have three times its area.
+pub(super) struct Polygon {
+    /// Strip of a link over its squared length.
+    strip_per_square: f64,
+}
+
+impl Polygon {
+    pub(super) fn of(surface: &Surface, face: &[u32]) -> Self {
+        let corners = face.iter().map(|&corner| surface.positions[corner as usize]);
+        let count = face.len() as f64;
+        let centre = corners.clone().sum::<Vector3<f64>>() / count;
+        // The sum over all pairs of corners.
+        let squares = count * corners.map(|corner| (corner - centre).norm_squared()).sum::<f64>();
+        Self {
+            strip_per_square: if squares > 0.0 { 3.0 * polygon_area(surface, face) / squares } else { 0.0 },
+        }
+    }
+
+    /// The strip of a line between two of its corners.
+    pub(super) fn strip(&self, surface: &Surface, ends: [u32; 2]) -> f64 {
+        self.strip_per_square * distance(surface, ends).powi(2)
     }
 }
 
@@ -147,20 +161,24 @@ impl Cell {
     }
 }
 
-/// Lines between points of a face that are not neighbours, with the strip of each.
-fn diagonals(surface: &Surface, strip: impl Fn(&Surface, &[u32], [u32; 2]) -> f64) -> Vec<Line> {
+/// The lines across all faces, with the strip of each, given those of a face.
+fn diagonals<'a, Strip: Fn([u32; 2]) -> f64>(
+    surface: &'a Surface,
+    strips: impl Fn(&'a [u32]) -> Strip,
+) -> Vec<Line> {
     let mut lines = Vec::new();
     for face in surface.faces.iter().filter(|face| face.len() > 3) {
-        for first in 0..face.len() {
-            for second in first + 2..face.len() {
-                if first > 0 || second + 1 < face.len() {
-                    let ends = [face[first].min(face[second]), face[first].max(face[second])];
-                    lines.push(Line { ends, strip: strip(surface, face, ends) });
-                }
-            }
-        }
+        let strip = strips(face);
+        lines.extend(across(face).map(|ends| Line { ends, strip: strip(ends) }));
     }
     lines
+}
+
+/// The lines between corners of a face that are not neighbours, each with its lower end first.
+pub(super) fn across(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let pairs = (2..face.len()).flat_map(|second| (0..second - 1).map(move |first| (first, second)));
+    let pairs = pairs.filter(|&(first, second)| first > 0 || second + 1 < face.len());
+    pairs.map(|(first, second)| [face[first].min(face[second]), face[first].max(face[second])])
 }
 
 /// The edges that two faces share. Where more than two do (a non-manifold edge), each face is joined to the next.

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::model::surface::Surface;
-use crate::model::topology::{Link, around, distance, polygon_area, polygon_strip, slenderness};
+use crate::model::topology::{Link, Polygon, across, around, distance, polygon_area, slenderness};
 
 /// The links of woven cloth, each sorted by ends.
 pub struct WovenLinks {
@@ -31,6 +31,7 @@ pub fn woven_links(surface: &Surface, warp: &[Vector3<f64>]) -> WovenLinks {
     let (mut edges, mut cross) = (Vec::new(), Vec::new());
     for (face, warp) in surface.faces.iter().zip(warp) {
         let area = polygon_area(surface, face);
+        let polygon = Polygon::of(surface, face);
         let along = |ends: [u32; 2]| cosine_squared(surface, ends, warp);
         // 1 where the sides are parallel to warp or weft, 0 at 45° to them.
         let aligned = |ends: [u32; 2]| (2.0 * along(ends) - 1.0).powi(2);
@@ -39,26 +40,19 @@ pub fn woven_links(surface: &Surface, warp: &[Vector3<f64>]) -> WovenLinks {
             let strip = match face.len() {
                 3 => area,
                 4 => area * (1.0 + alignment) / 4.0,
-                _ => polygon_strip(surface, face, ends),
+                _ => polygon.strip(surface, ends),
             };
             edges.push((ends, strip, along(ends)));
         }
-        for ends in diagonals(face) {
+        for ends in across(face) {
             let strip = match face.len() {
                 4 => area * (2.0 - alignment) / 2.0,
-                _ => polygon_strip(surface, face, ends),
+                _ => polygon.strip(surface, ends),
             };
             cross.push((ends, strip, along(ends)));
         }
     }
     WovenLinks { edges: merged(surface, edges), cross: merged(surface, cross) }
-}
-
-/// The lines between corners that are not neighbours, each with its lower end first.
-fn diagonals(face: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
-    let pairs = (2..face.len()).flat_map(|second| (0..second - 1).map(move |first| (first, second)));
-    let pairs = pairs.filter(|&(first, second)| first > 0 || second + 1 < face.len());
-    pairs.map(|(first, second)| [face[first].min(face[second]), face[first].max(face[second])])
 }
 
 fn cosine_squared(surface: &Surface, [a, b]: [u32; 2], warp: &Vector3<f64>) -> f64 {

@@ -68,7 +68,7 @@ impl<R: Real> Schedule<R> {
     /// of the frame as if all were split alike, and its interval.
     pub fn time_steps(&self, step: u32) -> impl Iterator<Item = (u32, StepInterval)> + use<R> {
         let (span, splits) = (self.span(step), self.splits);
-        (0..splits).map(move |k| (step * splits + k, span.part(k, splits)))
+        (0..splits).map(move |k| (step.wrapping_mul(splits).wrapping_add(k), span.part(k, splits)))
     }
 
     /// Sets the sweeps and passes of a time step.

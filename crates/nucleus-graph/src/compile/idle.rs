@@ -33,6 +33,11 @@ pub(super) fn warn_of_idle_nodes(scene: &Scene, broken: &BTreeSet<NodeId>, findi
         {
             let help = format!("give it one: `{}: (0, 1, 0)`", key.row.name);
             warn(id, format!("`{name}` acts on nothing: its `{}` is zero", key.row.name), &help);
+        } else if node.node_type().is_a(&air_field::AIR_FIELD)
+            && !graph.is_ever_nonzero(id, &air_field::SPEED)
+        {
+            let help = "`speed` is the rate at which objects take up its velocity: give it one, `speed: 1`";
+            warn(id, format!("`{name}` acts on nothing: its `speed` is zero"), help);
         }
     }
     for (id, node) in graph.of_type(&point_emitter::POINT_EMITTER) {

@@ -130,6 +130,9 @@ fn ramp_input(choice: Choice) -> RampInput {
     }
 }
 
+/// Largest number of a particle: `particleId0` is a list of floating-point numbers, which hold no larger whole numbers.
+const MAX_ID: f64 = 9_007_199_254_740_992.0;
+
 impl Compiler<'_> {
     /// The ramps of an object that differ from 1 anywhere.
     pub(super) fn particle_ramps(&mut self, node: NodeId) -> Vec<ParticleRamp> {
@@ -268,6 +271,26 @@ impl Compiler<'_> {
                 None
             }
         }
+    }
+
+    /// The numbers of the first particles, of which each has its own; `None` after an error, which is reported.
+    pub(super) fn particle_ids(&mut self, node: NodeId, places: &[Vector3<f64>]) -> Option<Vec<u64>> {
+        let given = self.particle_numbers(node, &particle::PARTICLE_ID0, places)?;
+        let is_number = |number: &f64| number.fract() == 0.0 && (0.0..=MAX_ID).contains(number);
+        let mut ids: Vec<u64> =
+            given.iter().filter(|number| is_number(number)).map(|&id| id as u64).collect();
+        let as_given = ids.clone();
+        ids.sort_unstable();
+        ids.dedup();
+        if ids.len() < given.len() {
+            let name = self.scene.graph.node(node).name();
+            let message = format!(
+                "the numbers of `{name}` in `particleId0` are not each its own, whole and at least 0"
+            );
+            self.findings.error(&self.place(node, &particle::PARTICLE_ID0.row), message);
+            return None;
+        }
+        Some(as_given)
     }
 
     /// The collision events of an object; `None` after an error, which is reported.

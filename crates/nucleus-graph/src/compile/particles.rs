@@ -109,7 +109,7 @@ impl Compiler<'_> {
         self.check_expressions(id)?;
         let ramps = self.particle_ramps(id);
         let events = self.collision_events(id)?;
-        let numbers = self.particle_numbers(id, &particle::PARTICLE_ID0, places)?;
+        let ids = self.particle_ids(id, places)?;
         let ages = self.particle_numbers(id, &particle::AGE0, places)?;
         let listed = self.particle_numbers(id, &n_particle::LIFESPAN_PP, places)?;
         let runs = self.has_runtime_expression(id);
@@ -118,7 +118,7 @@ impl Compiler<'_> {
         let differs = !ramps.is_empty() || !events.is_empty() || is_target || runs;
         let varies = dies(graph, id) || differs || recorded > points;
         let rotates = self.start.get(id, &n_particle::COMPUTE_ROTATION);
-        if emitters.is_empty() && !varies && !rotates && numbers.is_empty() && ages.is_empty() {
+        if emitters.is_empty() && !varies && !rotates && ids.is_empty() && ages.is_empty() {
             return Some(None);
         }
         let mut room = self.room_for_particles(id, points, emitters).max(recorded as u64);
@@ -147,7 +147,6 @@ impl Compiler<'_> {
             false => lifespan.of_first(points, seed),
         };
         let radius = self.program.units.length(self.start.get(id, &n_particle::RADIUS));
-        let ids = numbers.iter().map(|number| number.max(0.0) as u64).collect();
         Some(Some(Particles {
             capacity: (room as usize).max(1),
             lifespans,

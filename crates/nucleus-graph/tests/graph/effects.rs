@@ -218,6 +218,43 @@ fn a_newton_field_does_not_act_within_its_smallest_distance() {
     assert!(places[0][0] == 1.0 && places[1][0] < 2.99, "{places:?}");
 }
 
+/// Where particles are after a second at a number of frames per second, with an evaluation every so many frames.
+fn after_a_second(nodes: &str, fps: u32, every: f64) -> Vec<[f32; 3]> {
+    let text = format!("Scene(time: (start: 0, end: {fps}, fps: {fps}, every: {every}), nodes: {{{nodes}}})");
+    let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("it can be read");
+    let program = compile(&scene).expect("it compiles");
+    places(&program, fps as usize, "q")
+}
+
+#[test]
+fn the_motion_of_a_second_does_not_depend_on_the_number_of_its_frames() {
+    let gusts = r#""n": nucleus(gravity: 0), "q": nParticle(position: [(0.3, 0.2, 0.1)], drag: 0, collide: false),
+        "f": volumeAxisField(target: "q", volumeShape: sphere, scale: (9, 9, 9), awayFromCenter: 0, turbulence: 1, turbulenceSpeed: 2)"#;
+    let at = |fps: u32, every: f64| after_a_second(gusts, fps, every)[0];
+    let at_24 = at(24, 1.0);
+    for (fps, every) in [(24, 0.5), (48, 1.0), (96, 1.0)] {
+        let other = at(fps, every);
+        let apart = (0..3).map(|k| (other[k] - at_24[k]).abs()).fold(0.0, f32::max);
+        assert!(apart < 0.02, "{fps}, {every}: {other:?}, {at_24:?}");
+    }
+    let slowed = r#""n": nucleus(gravity: 0), "q": nParticle(position: [(0, 0, 0)], velocity0: [(3, 0, 0)], drag: 0, conserve: 0.95)"#;
+    let [whole, half] = [1.0, 0.5].map(|every| after_a_second(slowed, 24, every)[0][0]);
+    assert!((whole - half).abs() < 0.03, "{whole}, {half}");
+}
+
+#[test]
+fn a_whole_object_is_excluded_with_the_particles_that_are_yet_to_be_born() {
+    let lowest = |hold: &str| {
+        let nodes = format!(
+            r#""n": nucleus(usePlane: true), "e": pointEmitter(target: "q", rate: 96, speed: 0, translateY: 0.5),
+            "q": nParticle(selfCollide: false, radius: 0.01){hold}"#
+        );
+        moved(&nodes, 24).iter().map(|place| place[1]).fold(f32::INFINITY, f32::min)
+    };
+    let excluded = lowest(r#", "x": dynamicConstraint(type: disableCollision, components: ["q"])"#);
+    assert!(lowest("") > 0.0 && excluded < -1.0, "{excluded}");
+}
+
 #[test]
 fn the_general_seed_draws_the_lifespans_of_emitted_particles() {
     let left = |seed: u32| {
@@ -239,6 +276,10 @@ fn nodes_that_act_on_nothing_are_warned_of() {
         (r#""e": pointEmitter(rate: 100)"#, "`e` emits into no particles"),
         (r#""f": uniformField(target: "q", magnitude: 5)"#, "`f` acts on nothing: its `direction` is zero"),
         (r#""f": vortexField(target: "q", axis: (0, 0, 0))"#, "`f` acts on nothing: its `axis` is zero"),
+        (
+            r#""f": airField(target: "q", direction: (1, 0, 0), magnitude: 5)"#,
+            "`f` acts on nothing: its `speed` is zero",
+        ),
         (
             r#""b": nRigid(inputMesh: "m2"), "m2": polyCube(), "f": gravityField(target: "b", direction: (0, 1, 0))"#,
             "`f` acts on colliders only, which no force moves",
@@ -303,7 +344,7 @@ fn settings_without_effect_are_warned_of_with_the_setting_that_is_missing() {
         ("nucleus(planeFriction: 1)", "`planeFriction` of `x` has no effect: `usePlane` is false"),
         ("nucleus(windNoise: 1)", "`windNoise` of `x` has no effect: `windSpeed` is 0"),
         (
-            r#"airField(target: "q", direction: (1, 0, 0), spread: 0.2)"#,
+            r#"airField(target: "q", direction: (1, 0, 0), speed: 1, spread: 0.2)"#,
             "`spread` of `x` has no effect: `enableSpread` is false",
         ),
         (

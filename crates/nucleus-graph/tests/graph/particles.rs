@@ -380,6 +380,12 @@ fn bad_ramps_lists_and_events_are_errors_that_name_them() {
     };
     assert_eq!(errors("mass0: [1]"), ["`mass0` of `q` has 1 values for 2 particles"]);
     assert_eq!(errors("mass0: [1, 0]"), ["`mass0` of `q` must be above 0, but is 0"]);
+    for numbers in ["[3, 3]", "[0.5, 1]", "[-1, 0]", "[0, 1e20]"] {
+        assert_eq!(
+            errors(&format!("particleId0: {numbers}")),
+            ["the numbers of `q` in `particleId0` are not each its own, whole and at least 0"]
+        );
+    }
     assert_eq!(
         errors(r#"age0: expression("1 / x")"#),
         ["`age0` of `q` is not a finite number at particle 0"]

@@ -221,10 +221,11 @@ impl EvaluationInterval<'_> {
         kept.births_refused = kept.births_refused.saturating_add(count as u64 - made);
         for k in 0..made {
             let time = time_of(k as f64 + 1.0 - remainder, rates);
-            let random = Random::new([flight.seed, emitter.place, first + k]);
+            let number = first.saturating_add(k);
+            let random = Random::new([flight.seed, emitter.place, number]);
             let birth = flight.birth(emitter.cloth, time, &launch, random, &lifespan);
             // A rate map leaves out draws; the numbers of the others stay.
-            numbers.extend(birth.as_ref().map(|_| first + k));
+            numbers.extend(birth.as_ref().map(|_| number));
             births.extend(birth);
         }
         let invalid = self.create(emitter, &numbers, &mut births[earlier..]);
