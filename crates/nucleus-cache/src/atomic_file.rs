@@ -73,11 +73,13 @@ impl AtomicFile {
         self.temporary.as_file().try_clone()
     }
 
-    /// Renames the temporary file over the destination.
+    /// Renames the temporary file over the destination. Its bytes are on disk before the rename, so a power failure leaves
+    /// the old file or the new one.
     ///
     /// # Errors
-    /// When the destination cannot be replaced; it is then as before.
+    /// When the bytes cannot be written or the destination cannot be replaced; it is then as before.
     pub fn commit(self) -> io::Result<()> {
+        self.temporary.as_file().sync_all()?;
         self.temporary.persist(self.target).map(drop).map_err(|failed| failed.error)
     }
 }
@@ -98,14 +100,13 @@ impl Seek for AtomicFile {
     }
 }
 
-/// Replaces a file by these bytes. They are on disk before the rename, so a power failure leaves one of the two.
+/// Replaces a file by these bytes.
 ///
 /// # Errors
 /// When the file cannot be written; the destination is then as before.
 pub fn write(destination: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = AtomicFile::create(destination)?;
     file.write_all(bytes)?;
-    file.temporary.as_file().sync_all()?;
     file.commit()
 }
 

@@ -24,20 +24,21 @@ pub(crate) struct PartFile {
 pub(crate) struct PartPaths {
     partial: PathBuf,
     final_path: PathBuf,
+    /// Another handle to the file: it keeps the lock until the file has its final name, after the writer is closed.
+    locked: File,
 }
 
 /// Creates the temporary file beside the file that `path` names. With `replace` it may overwrite an older cache, and the
 /// partial cache of a killed run.
 pub(crate) fn create(path: &Path, replace: bool) -> Result<PartFile, RecordError> {
     check_existing(path, replace)?;
-    let partial = part_path(path);
-    let file = open(&partial, path)?;
+    let (partial, final_path) = (part_path(path), follow_links(path));
+    let file = open(&partial, path, replace)?;
     let length = file.metadata().map_err(|source| failed(path, source))?.len();
     if length > 0 && !replace {
         return Err(RecordError::Unfinished { path: partial });
     }
-    file.set_len(0).map_err(|source| failed(path, source))?;
-    Ok(PartFile { file, paths: PartPaths { partial, final_path: follow_links(path) } })
+    empty(file, partial, final_path).map_err(|source| failed(path, source))
 }
 
 /// Creates the temporary file of a resumed run, beside the partial cache. With `replace` it may overwrite an older
@@ -46,9 +47,15 @@ pub(crate) fn create_for_resume(path: &Path, replace: bool) -> Result<PartFile, 
     check_existing(path, replace)?;
     let final_path = follow_links(path);
     let partial = with_end(&final_path, ".resuming");
-    let file = open(&partial, path)?;
-    file.set_len(0).map_err(|source| failed(path, source))?;
-    Ok(PartFile { file, paths: PartPaths { partial, final_path } })
+    let file = open(&partial, path, replace)?;
+    empty(file, partial, final_path).map_err(|source| failed(path, source))
+}
+
+/// The locked file without its bytes.
+fn empty(file: File, partial: PathBuf, final_path: PathBuf) -> io::Result<PartFile> {
+    file.set_len(0)?;
+    let locked = file.try_clone()?;
+    Ok(PartFile { file, paths: PartPaths { partial, final_path, locked } })
 }
 
 fn failed(path: &Path, source: io::Error) -> RecordError {
@@ -56,11 +63,46 @@ fn failed(path: &Path, source: io::Error) -> RecordError {
 }
 
 /// Opens a file for writing and locks it.
-fn open(partial: &Path, path: &Path) -> Result<File, RecordError> {
+fn open(partial: &Path, path: &Path, replace: bool) -> Result<File, RecordError> {
     let mut options = File::options();
     let options = options.read(true).write(true).create(true).truncate(false);
-    let file = options.open(partial).map_err(|source| failed(path, source))?;
-    if is_locked(&file) { Err(RecordError::InUse { path: partial.to_owned() }) } else { Ok(file) }
+    loop {
+        let file = options.open(partial).map_err(|source| failed(path, source))?;
+        if is_locked(&file) {
+            return Err(RecordError::InUse { path: partial.to_owned() });
+        }
+        // Another run may have renamed the file before it was locked: it is a finished cache then.
+        if is_at(&file, partial).map_err(|source| failed(path, source))? {
+            return check_again(file, partial, path, replace);
+        }
+    }
+}
+
+/// Checks a second time whether an existing file may be replaced: until the lock, another run could finish.
+fn check_again(file: File, partial: &Path, path: &Path, replace: bool) -> Result<File, RecordError> {
+    let checked = check_existing(path, replace);
+    if checked.is_err() && file.metadata().is_ok_and(|found| found.len() == 0) {
+        let _ = fs::remove_file(partial);
+    }
+    checked.map(|()| file)
+}
+
+/// Whether the path still names the open file.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let opened = file.metadata()?;
+    match path.metadata() {
+        Ok(named) => Ok((named.dev(), named.ino()) == (opened.dev(), opened.ino())),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Whether the path still names the open file; unknown, and taken as yes, where files have no number.
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> io::Result<bool> {
+    Ok(true)
 }
 
 /// Whether another run has locked the file; if not, this call locks it.
@@ -102,9 +144,11 @@ fn with_end(path: &Path, end: &str) -> PathBuf {
 }
 
 impl PartPaths {
-    /// Renames the file of a resumed run to the path of a partial cache.
+    /// Renames the file of a resumed run to the path of a partial cache. Its bytes are on disk before, because the rename
+    /// removes those of the older cache.
     pub fn promote(&mut self) -> io::Result<()> {
         let partial = part_path(&self.final_path);
+        self.locked.sync_all()?;
         fs::rename(&self.partial, &partial)?;
         self.partial = partial;
         Ok(())
@@ -115,8 +159,9 @@ impl PartPaths {
         let _ = fs::remove_file(&self.partial);
     }
 
-    /// Renames the whole file to its final path.
-    pub fn commit(&self) -> io::Result<()> {
+    /// Renames the whole file to its final path. Its bytes are on disk before, so a power failure leaves no empty cache.
+    pub fn commit(self) -> io::Result<()> {
+        self.locked.sync_all()?;
         fs::rename(&self.partial, &self.final_path)
     }
 }
@@ -137,5 +182,45 @@ pub(crate) fn read_header(head: &[u8]) -> Option<(String, String)> {
     match (opcode == op::HEADER).then(|| mcap::parse_record(opcode, body))? {
         Ok(Record::Header(header)) => Some((header.profile, header.library)),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_locked_until_it_has_its_final_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.mcap");
+        let PartFile { file, paths } = create(&path, true).unwrap();
+        drop(file);
+        assert!(matches!(create(&path, true), Err(RecordError::InUse { .. })));
+        paths.commit().unwrap();
+        assert!(path.exists() && create(&path, true).is_ok());
+    }
+
+    #[test]
+    fn a_cache_that_is_finished_before_the_lock_is_not_replaced_unasked() {
+        let folder = tempfile::tempdir().unwrap();
+        let [part, path] = ["a.mcap.part", "a.mcap"].map(|name| folder.path().join(name));
+        File::create(&path).unwrap();
+        assert!(matches!(open(&part, &path, false), Err(RecordError::Exists { .. })));
+        assert!(!part.exists());
+        assert!(open(&part, &path, true).is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_another_run_has_renamed_is_no_longer_at_its_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let [part, whole] = ["a.part", "a"].map(|name| folder.path().join(name));
+        let file = File::create(&part).unwrap();
+        assert!(is_at(&file, &part).unwrap());
+        fs::rename(&part, &whole).unwrap();
+        assert!(!is_at(&file, &part).unwrap(), "the path names nothing");
+        let next = File::create(&part).unwrap();
+        assert!(!is_at(&file, &part).unwrap(), "the path names the file of the next run");
+        assert!(is_at(&next, &part).unwrap());
     }
 }
