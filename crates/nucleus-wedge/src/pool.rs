@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::error::{WedgeError, at};
@@ -67,9 +67,6 @@ pub enum Event {
     },
 }
 
-/// The pipes of the children, by slot.
-type Pipes = Mutex<Vec<Option<ChildStdin>>>;
-
 impl Pool<'_> {
     /// Executes runs until all have ended, or `should_stop`: then it asks the running ones to end, and waits for them.
     ///
@@ -81,20 +78,20 @@ impl Pool<'_> {
         should_stop: &dyn Fn() -> bool,
         on_event: &mut dyn FnMut(Event),
     ) -> Result<(), WedgeError> {
-        let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let next = AtomicUsize::new(0);
         let jobs = self.jobs.clamp(1, runs.len().max(1));
-        let pipes: Pipes = Mutex::new((0..jobs).map(|_| None).collect());
+        let children = Children::new(jobs);
         let (sender, events) = channel();
         std::thread::scope(|scope| {
             for slot in 0..jobs {
                 let sender = sender.clone();
-                let (next, stop, pipes) = (&next, &stop, &pipes);
+                let (next, children) = (&next, &children);
                 scope.spawn(move || {
                     while let Some(run) = runs.get(next.fetch_add(1, Ordering::SeqCst)) {
-                        if stop.load(Ordering::SeqCst) {
+                        if !children.may_start() {
                             return;
                         }
-                        let ended = self.one(run, slot, pipes, stop, &sender);
+                        let ended = self.one(run, slot, children, &sender);
                         let is_error = ended.is_err();
                         if sender.send(ended.map(|result| Event::Ended { run: run.run, result })).is_err()
                             || is_error
@@ -111,13 +108,13 @@ impl Pool<'_> {
                     Ok(Ok(event)) => on_event(event),
                     Ok(Err(error)) => {
                         first_error.get_or_insert(error);
-                        stop.store(true, Ordering::SeqCst);
+                        children.start_no_more();
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => break,
                 }
-                if should_stop() && !stop.swap(true, Ordering::SeqCst) {
-                    locked(&pipes).iter_mut().for_each(|pipe| drop(pipe.take()));
+                if should_stop() {
+                    children.ask_to_end();
                 }
             }
             first_error.map_or(Ok(()), Err)
@@ -129,19 +126,13 @@ impl Pool<'_> {
         &self,
         run: &PlannedRun,
         slot: usize,
-        pipes: &Pipes,
-        stop: &AtomicBool,
+        children: &Children,
         events: &Sender<Result<Event, WedgeError>>,
     ) -> Result<Option<RunResult>, WedgeError> {
         let begin = Instant::now();
         let log = self.folder.log(&run.name);
         let mut child = self.start(run, &log)?;
-        {
-            let mut pipes = locked(pipes);
-            // A request to stop that arrived since the start closes the pipe at once.
-            let pipe = child.stdin.take();
-            pipes[slot] = pipe.filter(|_| !stop.load(Ordering::SeqCst));
-        }
+        children.hold(slot, child.stdin.take());
         // The receiver outlives all senders.
         let send = |event| drop(events.send(Ok(event)));
         send(Event::Started { run: run.run });
@@ -152,7 +143,7 @@ impl Pool<'_> {
             }
         }
         let status = child.wait().map_err(|source| at(&log, source))?;
-        locked(pipes)[slot] = None;
+        children.hold(slot, None);
         if status.code() == Some(BUSY) {
             return Ok(None);
         }
@@ -203,8 +194,47 @@ impl Pool<'_> {
     }
 }
 
-fn locked(pipes: &Pipes) -> std::sync::MutexGuard<'_, Vec<Option<ChildStdin>>> {
-    pipes.lock().unwrap_or_else(PoisonError::into_inner)
+/// The children of a pool.
+struct Children {
+    /// Their pipes, by slot.
+    pipes: Mutex<Vec<Option<ChildStdin>>>,
+    /// No further child is started: after an error, or a request to end.
+    starts_no_more: AtomicBool,
+    /// The children are asked to end, also those that are being started.
+    must_end: AtomicBool,
+}
+
+impl Children {
+    fn new(slots: usize) -> Self {
+        let pipes = Mutex::new((0..slots).map(|_| None).collect());
+        Self { pipes, starts_no_more: AtomicBool::new(false), must_end: AtomicBool::new(false) }
+    }
+
+    fn may_start(&self) -> bool {
+        !self.starts_no_more.load(Ordering::SeqCst)
+    }
+
+    fn start_no_more(&self) {
+        self.starts_no_more.store(true, Ordering::SeqCst);
+    }
+
+    /// Closes all pipes, of which children notice that they are to end.
+    fn ask_to_end(&self) {
+        self.start_no_more();
+        self.must_end.store(true, Ordering::SeqCst);
+        self.pipes().iter_mut().for_each(|pipe| drop(pipe.take()));
+    }
+
+    /// Holds the pipe of the child in a slot in place of that of the child before.
+    fn hold(&self, slot: usize, pipe: Option<ChildStdin>) {
+        let mut pipes = self.pipes();
+        // A request that arrived since the start of the child closes the pipe at once.
+        pipes[slot] = pipe.filter(|_| !self.must_end.load(Ordering::SeqCst));
+    }
+
+    fn pipes(&self) -> MutexGuard<'_, Vec<Option<ChildStdin>>> {
+        self.pipes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// The frame of a line of `nucleus run --json`.
@@ -241,6 +271,13 @@ mod tests {
     use super::*;
     use crate::plan::Plan;
 
+    /// A process that lives until its pipe is closed, and the pipe.
+    fn reader() -> (Child, Option<ChildStdin>) {
+        let mut child = Command::new("cat").stdin(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+        let pipe = child.stdin.take();
+        (child, pipe)
+    }
+
     /// The outcome of a run whose process is this script of a shell.
     fn outcome(script: &str) -> RunOutcome {
         let folder = tempfile::tempdir().unwrap();
@@ -269,5 +306,21 @@ mod tests {
         assert_eq!(outcome("kill -9 $$"), RunOutcome::Killed);
         // Asked twice to end: there was no time for a result, and nothing is wrong with the run.
         assert_eq!(outcome("exit 130"), RunOutcome::Interrupted);
+    }
+
+    #[test]
+    fn a_request_to_end_reaches_the_children_after_an_error() {
+        let children = Children::new(2);
+        let [(mut early, early_pipe), (mut late, late_pipe)] = [reader(), reader()];
+        children.start_no_more();
+        children.hold(0, early_pipe);
+        assert!(!children.may_start() && children.pipes()[0].is_some(), "the other runs end first");
+        children.ask_to_end();
+        children.hold(1, late_pipe);
+        assert!(
+            children.pipes().iter().all(Option::is_none),
+            "also that of a child whose start was under way"
+        );
+        assert!(early.wait().unwrap().success() && late.wait().unwrap().success());
     }
 }
