@@ -20,7 +20,7 @@ use nucleus_cache::atomic_file;
 
 use crate::error::{WedgeError, at};
 use crate::plan::{Plan, PlannedRun};
-use crate::result::{RunOutcome, RunResult};
+use crate::result::RunResult;
 
 /// The folder of a wedge.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -179,7 +179,8 @@ impl WedgeFolder {
         }
     }
 
-    /// Whether a run has left a cache that can be resumed: that of a killed run, or of one that was interrupted.
+    /// Whether a run has left a cache that can be resumed: an unfinished one, or one of an interrupted run. A later process
+    /// that failed or was killed while it resumed that one has left it as it was.
     ///
     /// # Errors
     /// When a result exists and cannot be read.
@@ -189,9 +190,8 @@ impl WedgeFolder {
         if fs::metadata(part).is_ok_and(|found| found.len() > 0) {
             return Ok(true);
         }
-        let was_interrupted =
-            self.result(name)?.is_some_and(|result| result.outcome == RunOutcome::Interrupted);
-        Ok(was_interrupted && cache.is_file())
+        let is_finished = self.result(name)?.is_some_and(|result| result.outcome.is_final());
+        Ok(!is_finished && cache.is_file())
     }
 
     /// Locks a run; `None` if another process is at it.
@@ -214,7 +214,7 @@ impl WedgeFolder {
 mod tests {
     use super::*;
     use crate::plan::PlanHeader;
-    use crate::result::SolvedFrames;
+    use crate::result::{RunOutcome, SolvedFrames};
 
     fn wedge() -> (tempfile::TempDir, WedgeFolder, Plan) {
         let folder = tempfile::tempdir().unwrap();
@@ -270,6 +270,19 @@ mod tests {
         assert_eq!(fault(5.into()), None);
         let stopped = RunResult { outcome: RunOutcome::Interrupted, ..recorded(9.into()) };
         assert_eq!(wedge.cache_fault("0000", &stopped), None, "it is resumed");
+    }
+
+    #[test]
+    fn the_cache_of_an_interrupted_run_can_be_resumed_until_the_run_is_finished() {
+        let (_folder, wedge, _) = wedge();
+        assert!(!wedge.can_resume("0000").unwrap());
+        fs::write(wedge.cache("0000"), b"frames").unwrap();
+        for outcome in [RunOutcome::Interrupted, RunOutcome::Failed, RunOutcome::Killed] {
+            wedge.write_result("0000", &result(outcome)).unwrap();
+            assert!(wedge.can_resume("0000").unwrap(), "{outcome:?}");
+        }
+        wedge.write_result("0000", &result(RunOutcome::Problem)).unwrap();
+        assert!(!wedge.can_resume("0000").unwrap());
     }
 
     #[test]
