@@ -240,6 +240,7 @@ mod tests {
             earlier: SolvedFrames::default(),
             at_once: 1,
             machine: String::new(),
+            attempt: 0,
             report: None,
         }
     }

@@ -131,6 +131,7 @@ impl Pool<'_> {
     ) -> Result<Option<RunResult>, WedgeError> {
         let begin = Instant::now();
         let log = self.folder.log(&run.name);
+        let earlier = self.folder.result(&run.name)?;
         let mut child = self.start(run, &log)?;
         children.hold(slot, child.stdin.take());
         // The receiver outlives all senders.
@@ -147,7 +148,7 @@ impl Pool<'_> {
         if status.code() == Some(BUSY) {
             return Ok(None);
         }
-        self.result(run, status, begin.elapsed()).map(Some)
+        self.result(run, earlier.as_ref(), status, begin.elapsed()).map(Some)
     }
 
     fn start(&self, run: &PlannedRun, log: &Path) -> Result<Child, WedgeError> {
@@ -163,10 +164,20 @@ impl Pool<'_> {
         command.spawn().map_err(|source| at(Path::new(program), source))
     }
 
-    /// The result that the child has written; else what its end says.
-    fn result(&self, run: &PlannedRun, status: ExitStatus, time: Duration) -> Result<RunResult, WedgeError> {
+    /// The result that the child has written; else what its end says. `earlier`: the result before its start.
+    fn result(
+        &self,
+        run: &PlannedRun,
+        earlier: Option<&RunResult>,
+        status: ExitStatus,
+        time: Duration,
+    ) -> Result<RunResult, WedgeError> {
+        // A child that finds its run finished writes nothing.
+        let is_known = |result: &RunResult| status.success() && result.outcome.is_final();
+        let is_new = |result: &RunResult| earlier.is_none_or(|earlier| result.attempt != earlier.attempt);
         if status.code().is_some()
             && let Some(result) = self.folder.result(&run.name)?
+            && (is_new(&result) || is_known(&result))
         {
             return Ok(result);
         }
@@ -187,8 +198,10 @@ impl Pool<'_> {
             earlier: SolvedFrames::default(),
             at_once: self.jobs as u32,
             machine: machine(),
+            attempt: 0,
             report: None,
         };
+        let result = result.after(earlier);
         self.folder.write_result(&run.name, &result)?;
         Ok(result)
     }
@@ -268,8 +281,15 @@ pub fn when_parent_ends(closed: impl FnOnce() + Send + 'static) -> io::Result<()
 
 #[cfg(all(test, unix))]
 mod tests {
+    use serde_json::json;
+
     use super::*;
     use crate::plan::Plan;
+
+    fn result(outcome: RunOutcome) -> RunResult {
+        let (error, earlier, machine) = (None, SolvedFrames::default(), String::new());
+        RunResult { outcome, error, seconds: 1.0, earlier, at_once: 1, machine, attempt: 1, report: None }
+    }
 
     /// A process that lives until its pipe is closed, and the pipe.
     fn reader() -> (Child, Option<ChildStdin>) {
@@ -280,6 +300,11 @@ mod tests {
 
     /// The outcome of a run whose process is this script of a shell.
     fn outcome(script: &str) -> RunOutcome {
+        outcome_after(None, script)
+    }
+
+    /// The outcome of such a run that has a result of an earlier process.
+    fn outcome_after(earlier: Option<RunOutcome>, script: &str) -> RunOutcome {
         let folder = tempfile::tempdir().unwrap();
         let wedge = WedgeFolder::new(&folder.path().join("w")).unwrap();
         let (name, arguments) = ("0000".to_owned(), vec!["run".to_owned()]);
@@ -287,6 +312,9 @@ mod tests {
         let header = PlanHeader::new("a.ron".to_owned(), folder.path().to_owned(), Vec::new());
         let plan = Plan { header, runs: vec![run] };
         wedge.create(&plan).unwrap();
+        if let Some(outcome) = earlier {
+            wedge.write_result("0000", &result(outcome)).unwrap();
+        }
         let command = ["sh", "-c", script].map(OsString::from);
         let pool = Pool { command: &command, folder: &wedge, header: &plan.header, jobs: 1, options: &[] };
         let mut results = Vec::new();
@@ -306,6 +334,22 @@ mod tests {
         assert_eq!(outcome("kill -9 $$"), RunOutcome::Killed);
         // Asked twice to end: there was no time for a result, and nothing is wrong with the run.
         assert_eq!(outcome("exit 130"), RunOutcome::Interrupted);
+    }
+
+    #[test]
+    fn a_result_of_an_earlier_process_is_not_that_of_this_one() {
+        let interrupted = Some(RunOutcome::Interrupted);
+        assert_eq!(outcome_after(interrupted, "echo panicked >&2; exit 101"), RunOutcome::Failed);
+        assert_eq!(outcome_after(interrupted, "exit 0"), RunOutcome::Failed);
+        // `$2` is the folder of the wedge.
+        let written = json!(RunResult { attempt: 2, ..result(RunOutcome::Problem) });
+        let write = format!("echo '{written}' > \"$2/results/0000.json\"; exit 1");
+        assert_eq!(outcome_after(interrupted, &write), RunOutcome::Problem);
+        assert_eq!(
+            outcome_after(Some(RunOutcome::Success), "exit 0"),
+            RunOutcome::Success,
+            "it was finished"
+        );
     }
 
     #[test]

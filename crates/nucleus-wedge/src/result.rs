@@ -36,6 +36,9 @@ pub struct RunResult {
     pub at_once: u32,
     /// The machine that ran it.
     pub machine: String,
+    /// The number of results that the run has had, this one included. It tells the result of a process from an older one.
+    #[serde(default)]
+    pub attempt: u32,
     /// The report of the command.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<Value>,
@@ -94,8 +97,9 @@ impl RunResult {
         Some(SolvedFrames { frames: self.earlier.frames + frames, seconds: self.earlier.seconds + seconds })
     }
 
-    /// This result with the times of an earlier one, if this process has continued its frames.
+    /// This result as the next one after an earlier one, with its times if this process has continued its frames.
     pub fn after(mut self, earlier: Option<&Self>) -> Self {
+        self.attempt = earlier.map_or(0, |earlier| earlier.attempt) + 1;
         let has_continued = self.figure("frames_before").as_u64().is_some_and(|frames| frames > 0);
         if let Some(earlier) = earlier.filter(|_| has_continued)
             && let Some(solved) = earlier.solved()
@@ -160,7 +164,16 @@ mod tests {
         let summary = json!({ "frames": before + frames, "frames_before": before, "seconds": seconds });
         let report = Some(json!({ "summary": summary }));
         let (earlier, machine) = (SolvedFrames::default(), String::new());
-        RunResult { outcome, error: None, seconds: seconds + 1.0, earlier, at_once: 1, machine, report }
+        RunResult {
+            outcome,
+            error: None,
+            seconds: seconds + 1.0,
+            earlier,
+            at_once: 1,
+            machine,
+            attempt: 0,
+            report,
+        }
     }
 
     #[test]

@@ -186,6 +186,7 @@ fn given_up(attempts: usize) -> RunResult {
         earlier: SolvedFrames::default(),
         at_once: 1,
         machine: String::new(),
+        attempt: 0,
         report: None,
     }
 }

@@ -131,6 +131,7 @@ mod tests {
             earlier: SolvedFrames::default(),
             at_once: 2,
             machine: String::new(),
+            attempt: 0,
             report: None,
         };
         let plan = Plan { header, runs: vec![run] };

@@ -67,6 +67,7 @@ pub fn run(folder: &WedgeFolder, run: u32, threads: u16, at_once: u32) -> Result
         earlier: SolvedFrames::default(),
         at_once,
         machine: machine(),
+        attempt: 0,
         report,
     };
     folder.write_result(&planned.name, &result.after(earlier.as_ref()))?;
