@@ -9,7 +9,7 @@ use crate::container::chunk::Chunk;
 use crate::container::index::{FileIndex, rebuild, summary};
 use crate::container::part_file;
 use crate::corruption::CorruptionReport;
-use crate::error::OpenError;
+use crate::error::{OpenError, ReadError};
 use crate::messages::metadata::PROFILE;
 use crate::messages::topology;
 use crate::read::time_index::{self, TimeSample};
@@ -189,11 +189,17 @@ impl<R: Read + Seek> Playback<R> {
     }
 
     /// The first mesh of an object, from its chunk or from a redundant copy.
-    fn first_mesh(&mut self, channel: u16, name: &str) -> Option<ObjectInfo> {
-        let latest = self.load_latest(channel, 0).ok().flatten()?;
+    fn first_mesh(&mut self, channel: u16, name: &str) -> Result<Option<ObjectInfo>, OpenError> {
+        let latest = match self.load_latest(channel, 0) {
+            Ok(Some(latest)) => latest,
+            // Where the system fails to read, the file may be sound.
+            Err(ReadError::Io(error)) => return Err(error.into()),
+            Ok(None) | Err(_) => return Ok(None),
+        };
         self.corruption.start |= latest.is_copy;
-        let (object, number) = topology::read(name, self.latest_message(channel, latest)?)?;
-        (number == 0).then_some(object)
+        let message = self.latest_message(channel, latest);
+        let read = message.and_then(|message| topology::read(name, message));
+        Ok(read.filter(|&(_, number)| number == 0).map(|(object, _)| object))
     }
 
     /// Reads the meshes.
@@ -208,7 +214,7 @@ impl<R: Read + Seek> Playback<R> {
         for (mesh_channel, name) in topologies {
             let damaged = || OpenError::Topology { object: format!("`{name}`") };
             let points = self.file_index.channel(&format!("/{name}/points")).ok_or_else(damaged)?;
-            let object = match self.first_mesh(mesh_channel, &name) {
+            let object = match self.first_mesh(mesh_channel, &name)? {
                 Some(object) => object,
                 None => match self.points_without_mesh(points, &name)? {
                     Some(object) => {
