@@ -1,10 +1,10 @@
 //! A resumed run: the cache it continues, the scene of that cache, and whether both still match.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fmt, fs};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use nucleus_cache::{Checkpoint, ObjectInfo, OpenError, Playback, ReadError, shell_word};
+use nucleus_cache::{Checkpoint, ObjectInfo, OpenError, Playback, ReadError, RecordError, shell_word};
 use nucleus_core::{Real, RestoreError};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
@@ -17,6 +17,37 @@ use crate::output::say;
 use crate::recording::{AUDIT, PROGRAM, SCALAR, SEED, SETTING, fingerprint};
 use crate::run_statistics::FrameStatistics;
 use crate::{diagnostics, figures, files};
+
+/// Why a cache can never be resumed as it is: the run must be started again, or the cache be changed by hand.
+#[derive(Debug)]
+pub struct Unresumable(pub String);
+
+impl fmt::Display for Unresumable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Unresumable {}
+
+/// An [`Unresumable`] with a formatted message.
+macro_rules! unresumable {
+    ($($message:tt)*) => { Unresumable(format!($($message)*)) };
+}
+
+/// Whether an error of a resumed run lies in its cache. Any other error, such as a full disk, may pass.
+pub fn is_unresumable(error: &anyhow::Error) -> bool {
+    let is_refused = |error: &RecordError| {
+        matches!(error, RecordError::ReplayMismatch { .. } | RecordError::ReplayIncomplete { .. })
+    };
+    let is_broken = |error: &OpenError| {
+        use OpenError::{BadValue, Empty, NoRecord, NotMcap, TooShort, Topology};
+        matches!(error, Empty | TooShort | NotMcap | NoRecord { .. } | BadValue { .. } | Topology { .. })
+    };
+    error.is::<Unresumable>()
+        || error.downcast_ref().is_some_and(is_refused)
+        || error.downcast_ref().is_some_and(is_broken)
+}
 
 /// A run that is resumed from its cache.
 pub struct ResumedRun {
@@ -47,14 +78,11 @@ impl ResumedRun {
         cache.verify().with_context(cannot)?;
         ensure!(
             cache.corruption().can_resume(),
-            "{}: {}; `nucleus recover` saves the frames",
-            cannot(),
-            cache.corruption()
+            unresumable!("{}: {}; `nucleus recover` saves the frames", cannot(), cache.corruption())
         );
         ensure!(
             !cache.time_samples().is_empty(),
-            "`{}` holds no frame: start the run again with `nucleus run`",
-            file.display()
+            unresumable!("`{}` holds no frame: start the run again with `nucleus run`", file.display())
         );
         Ok(Self { file, complete, cache })
     }
@@ -81,7 +109,10 @@ impl ResumedRun {
             Some(path) => files::open_scene(path, None)?,
             None => {
                 let text = &run.scene_text;
-                ensure!(!text.is_empty(), "{} holds no scene: name it with `--scene`", self.name());
+                ensure!(
+                    !text.is_empty(),
+                    unresumable!("{} holds no scene: name it with `--scene`", self.name())
+                );
                 files::scene_from_text(text.clone(), &self.scene_path(), None)?
             }
         };
@@ -90,9 +121,11 @@ impl ResumedRun {
         let (first, program) = (i64::from(run.start), self.program(&mut scene, changed.is_some(), end)?);
         ensure!(
             program.time().start == first,
-            "the scene starts at frame {}, but {} at frame {first}: run it again with `nucleus run`",
-            program.time().start,
-            self.name()
+            unresumable!(
+                "the scene starts at frame {}, but {} at frame {first}: run it again with `nucleus run`",
+                program.time().start,
+                self.name()
+            )
         );
         self.check_objects(&program)?;
         if changed.is_none() {
@@ -132,32 +165,42 @@ impl ResumedRun {
         let units = program.units_per_metre();
         ensure!(
             program.time().fps == run.frames_per_second && units == run.units_per_metre,
-            "the scene has {} frames per second and {units} units per metre, but {} has {} and {}: run it again with `nucleus run`",
-            program.time().fps,
-            self.name(),
-            run.frames_per_second,
-            run.units_per_metre
+            unresumable!(
+                "the scene has {} frames per second and {units} units per metre, but {} has {} and {}: run it again with `nucleus run`",
+                program.time().fps,
+                self.name(),
+                run.frames_per_second,
+                run.units_per_metre
+            )
         );
         let recorded: Vec<&ObjectInfo> = self.cache.objects().iter().collect();
         for object in program.objects() {
             let Some(found) = recorded.iter().find(|recorded| recorded.name == object.name) else {
-                bail!("`{}` is not in {}: a resumed run needs the same objects", object.name, self.name())
+                bail!(unresumable!(
+                    "`{}` is not in {}: a resumed run needs the same objects",
+                    object.name,
+                    self.name()
+                ))
             };
             ensure!(
                 found.rest.len() == object.points && found.faces == object.faces,
-                "the mesh of `{}` differs from that in {}: {} points and {} faces, but {} and {} in the cache",
-                object.name,
-                self.name(),
-                object.points,
-                object.faces.len(),
-                found.rest.len(),
-                found.faces.len()
+                unresumable!(
+                    "the mesh of `{}` differs from that in {}: {} points and {} faces, but {} and {} in the cache",
+                    object.name,
+                    self.name(),
+                    object.points,
+                    object.faces.len(),
+                    found.rest.len(),
+                    found.faces.len()
+                )
             );
         }
         let is_gone =
             |recorded: &&&ObjectInfo| program.objects().iter().all(|object| object.name != recorded.name);
         match recorded.iter().find(is_gone) {
-            Some(gone) => bail!("`{}` is in {} but no longer in the scene", gone.name, self.name()),
+            Some(gone) => {
+                bail!(unresumable!("`{}` is in {} but no longer in the scene", gone.name, self.name()))
+            }
             None => Ok(()),
         }
     }
@@ -167,11 +210,13 @@ impl ResumedRun {
         let known = self.cache.run().extra.get(PROGRAM);
         ensure!(
             known.is_none_or(|known| *known == fingerprint(program)),
-            "a mesh or map that the scene reads, or nucleus itself, has changed since {} was recorded; `nucleus resume {} \
-             --scene {} --at FRAME` keeps the frames up to FRAME and continues with the present files",
-            self.name(),
-            shell_word(&self.file),
-            shell_word(Path::new(&self.cache.run().scene_path))
+            unresumable!(
+                "a mesh or map that the scene reads, or nucleus itself, has changed since {} was recorded; `nucleus resume {} \
+                 --scene {} --at FRAME` keeps the frames up to FRAME and continues with the present files",
+                self.name(),
+                shell_word(&self.file),
+                shell_word(Path::new(&self.cache.run().scene_path))
+            )
         );
         Ok(())
     }
@@ -200,7 +245,7 @@ impl ResumedRun {
                 Err(error @ (RestoreError::Damaged | RestoreError::OtherVersion)) => {
                     say!("warning: checkpoint of frame {frame}: {error}; the previous checkpoint is used");
                 }
-                Err(error) => bail!("{} cannot be resumed: {error}", self.name()),
+                Err(error) => bail!(unresumable!("{} cannot be resumed: {error}", self.name())),
             }
         }
         self.restarted(program, threads, &format!("there is no intact checkpoint up to frame {latest}"))
@@ -215,10 +260,10 @@ impl ResumedRun {
     ) -> Result<(Simulation<R>, i32)> {
         let (name, run) = (self.name(), self.cache.run());
         if let Some(from) = run.extra.get("from") {
-            bail!("{name}: {reason}, and its initial state is that of `{from}`: run it again");
+            bail!(unresumable!("{name}: {reason}, and its initial state is that of `{from}`: run it again"));
         }
         if run.extra.contains_key(SEED) {
-            bail!("{name}: {reason}, and its start is displaced by a seed: run it again");
+            bail!(unresumable!("{name}: {reason}, and its start is displaced by a seed: run it again"));
         }
         say!("{name}: {reason}: every frame is solved again from frame {}", run.start);
         Ok((Simulation::new(program, threads), run.start))
@@ -278,6 +323,8 @@ fn parse_figures(reports: Vec<Value>) -> (Vec<FrameStatistics>, Vec<String>) {
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+
     use nucleus_core::StepReport;
     use serde_json::json;
 
@@ -290,6 +337,29 @@ mod tests {
         assert_eq!(figures.iter().map(|figures| figures.frame).collect::<Vec<_>>(), [3]);
         assert_eq!(unread.len(), 1);
         assert!(unread[0].starts_with("frame 2: missing field"), "{}", unread[0]);
+    }
+
+    #[test]
+    fn an_error_of_the_system_may_pass_and_one_of_the_cache_remains() {
+        let full = || io::Error::from(io::ErrorKind::StorageFull);
+        let path = || PathBuf::from("a.mcap");
+        for passes in [
+            anyhow!(RecordError::Create { path: path(), source: full() }),
+            anyhow!(RecordError::Write { frames: 9, bytes: 9, source: full() }),
+            anyhow!(OpenError::Io { path: path(), source: full() }),
+            anyhow!(OpenError::Read(full())).context("cannot resume `a.mcap`"),
+            anyhow!(OpenError::InUse { path: path() }),
+            anyhow!(full()),
+        ] {
+            assert!(!is_unresumable(&passes), "{passes:#}");
+        }
+        for remains in [
+            anyhow!(RecordError::ReplayMismatch { frame: 3, object: "cloth1".to_owned() }).context("advice"),
+            anyhow!(OpenError::TooShort).context("it ended early").context("cannot resume `a.mcap`"),
+            anyhow!(unresumable!("`a.mcap` holds no frame")),
+        ] {
+            assert!(is_unresumable(&remains), "{remains:#}");
+        }
     }
 
     #[test]

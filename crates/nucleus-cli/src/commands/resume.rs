@@ -12,7 +12,7 @@ use nucleus_graph::compile::Program;
 use crate::options::Scalar;
 use crate::output::say;
 use crate::process::Outcome;
-use crate::resumed_run::ResumedRun;
+use crate::resumed_run::{ResumedRun, Unresumable};
 use crate::run_loop::{Finished, Recording, RunLoop};
 use crate::{files, options, output, process, recording};
 
@@ -113,8 +113,10 @@ impl Resume {
         old.figures(copied, needs_audit)?.iter().for_each(|figures| run.add_recorded(figures));
         ensure!(
             run.not_finite().is_none(),
-            "a position or velocity is not finite from frame {} on: give an earlier frame with `--at`",
-            run.not_finite().unwrap_or_default()
+            Unresumable(format!(
+                "a position or velocity is not finite from frame {} on: give an earlier frame with `--at`",
+                run.not_finite().unwrap_or_default()
+            ))
         );
         // A changed scene may solve other frames from here on: only those of both are sure to be recorded.
         let interval = recording::interval(&program)?;

@@ -58,12 +58,8 @@ fn the_table_counts_the_frames_that_a_resumed_run_kept() {
     let folder = folder();
     scene(folder.path(), 12, "");
     assert_eq!(wedge(folder.path(), &["--checkpoint", "4"]).status.code(), Some(0));
-    // As if the process of the first run had been killed after frame 9.
-    let cache = folder.path().join("w/runs/0000.mcap");
-    let bytes = fs::read(&cache).unwrap();
-    fs::write(folder.path().join("w/runs/0000.mcap.part"), &bytes[..bytes.len() * 4 / 5]).unwrap();
-    fs::remove_file(cache).unwrap();
-    fs::remove_file(folder.path().join("w/results/0000.json")).unwrap();
+    // After frame 9.
+    cut_short(folder.path(), "0000", 0.8);
     let output = nucleus(folder.path(), &["wedge", "--continue", "--out", "w"]);
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
     let rows = table(folder.path());
@@ -74,6 +70,39 @@ fn the_table_counts_the_frames_that_a_resumed_run_kept() {
     assert_eq!((of(0, "frames"), of(1, "frames")), (11.0, 11.0));
     assert!(of(0, "frames timed") < 9.0, "{} frames were solved again", of(0, "frames timed"));
     assert_eq!(of(1, "frames timed"), 11.0);
+}
+
+/// Leaves the first `share` of the bytes of a run's cache, as if its process had been killed.
+fn cut_short(folder: &Path, run: &str, share: f64) {
+    let cache = folder.join(format!("w/runs/{run}.mcap"));
+    let bytes = fs::read(&cache).unwrap();
+    let kept = (bytes.len() as f64 * share) as usize;
+    fs::write(folder.join(format!("w/runs/{run}.mcap.part")), &bytes[..kept]).unwrap();
+    fs::remove_file(cache).unwrap();
+    fs::remove_file(folder.join(format!("w/results/{run}.json"))).unwrap();
+}
+
+#[test]
+fn an_error_of_the_system_costs_no_frames_and_a_cache_of_no_use_is_solved_again() {
+    let folder = folder();
+    scene(folder.path(), 12, "");
+    assert_eq!(wedge(folder.path(), &["--checkpoint", "4"]).status.code(), Some(0));
+    let read = |name: &str| fs::read(folder.path().join("w/runs").join(name)).unwrap();
+    let whole = read("0000.mcap");
+    cut_short(folder.path(), "0000", 0.8);
+    cut_short(folder.path(), "0001", 0.8);
+    let part = read("0000.mcap.part");
+    fs::write(folder.path().join("w/runs/0001.mcap.part"), [0; 4096]).unwrap();
+    // As on a full disk, the file of the resumed run cannot be created.
+    let in_the_way = folder.path().join("w/runs/0000.mcap.resuming");
+    fs::create_dir(&in_the_way).unwrap();
+    let output = nucleus(folder.path(), &["wedge", "--continue", "--out", "w"]);
+    assert!(stdout(&output).contains("4 runs: 3 success, 1 failed"), "{}", stdout(&output));
+    assert!(read("0000.mcap.part") == part, "all frames are kept");
+    fs::remove_dir(&in_the_way).unwrap();
+    let output = nucleus(folder.path(), &["wedge", "--continue", "--out", "w"]);
+    assert!(stdout(&output).contains("4 runs: 4 success"), "{}{}", stdout(&output), stderr(&output));
+    assert!(read("0000.mcap") == whole);
 }
 
 #[test]

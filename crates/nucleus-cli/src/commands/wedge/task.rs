@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use clap::{Parser, Subcommand};
+use nucleus_cache::RecordError;
 use nucleus_wedge::{
     Plan, PlannedRun, RunOutcome, RunResult, SolvedFrames, WedgeFolder, machine, when_parent_ends,
 };
@@ -18,6 +19,7 @@ use crate::commands::trade::Trade;
 use crate::commands::validate::Validate;
 use crate::output::say;
 use crate::process::{self, Outcome};
+use crate::resumed_run::is_unresumable;
 use crate::run_loop::Finished;
 
 /// The arguments of a run in a plan.
@@ -114,7 +116,7 @@ fn execute(folder: &WedgeFolder, planned: &PlannedRun, threads: u16) -> Result<E
     let parsed = Line::try_parse_from(words)
         .map_err(|error| anyhow!("the plan has arguments that `nucleus` does not take: {error}"))?;
     match parsed.command {
-        LineCommand::Run(run) => simulate(folder, planned, *run, threads).map(ended),
+        LineCommand::Run(run) => simulate(folder, planned, *run, threads),
         LineCommand::Extremes(extremes) => part(|| extremes.part()),
         LineCommand::Trade(trade) => part(|| trade.part()),
         LineCommand::Validate(validate) => part(|| validate.part()),
@@ -122,19 +124,41 @@ fn execute(folder: &WedgeFolder, planned: &PlannedRun, threads: u16) -> Result<E
 }
 
 /// Resumes the cache that an earlier attempt left, else starts the run.
-fn simulate(folder: &WedgeFolder, planned: &PlannedRun, run: Run, threads: u16) -> Result<Option<Finished>> {
+fn simulate(folder: &WedgeFolder, planned: &PlannedRun, run: Run, threads: u16) -> Result<Ended> {
     let cache = folder.cache(&planned.name);
-    if folder.can_resume(&planned.name)? {
-        match Resume::within(cache.clone(), threads).execute() {
-            Ok(Resumed::Finished(finished)) => return Ok(Some(finished)),
-            // The process was killed between the last frame and the result.
-            Ok(Resumed::Complete | Resumed::InvalidScene) => {}
-            Err(error) => say!("{error:#}; the run starts again"),
-        }
+    if folder.can_resume(&planned.name)?
+        && let Some(ended) = resume(Resume::within(cache.clone(), threads))?
+    {
+        return Ok(ended);
     }
     // The files of an attempt that cannot be resumed would block the new one.
     for left in [nucleus_cache::part_path(&cache), cache.clone()] {
         let _ = fs::remove_file(left);
     }
-    run.within(cache, threads).execute()
+    run.within(cache, threads).execute().map(ended)
+}
+
+/// Resumes a run. Returns `None` if its cache is of no use.
+///
+/// # Errors
+/// When the cache may be resumed at another time, for example when the disk is full.
+fn resume(resume: Resume) -> Result<Option<Ended>> {
+    match resume.execute() {
+        Ok(Resumed::Finished(finished)) => Ok(Some(ended(Some(finished)))),
+        // The process was killed between the last frame and the result.
+        Ok(Resumed::Complete) => Ok(None),
+        // A file that the scene reads may be out of reach.
+        Ok(Resumed::InvalidScene) => Ok(Some(ended(None))),
+        // The cache is replaced only when all its frames are solved again, so it has them still.
+        Err(error) if is_replay_interrupted(&error) => Ok(Some((RunOutcome::Interrupted, None, None))),
+        Err(error) if is_unresumable(&error) => {
+            say!("{error:#}; the run starts again");
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn is_replay_interrupted(error: &anyhow::Error) -> bool {
+    process::is_interrupted() && matches!(error.downcast_ref(), Some(RecordError::ReplayIncomplete { .. }))
 }
