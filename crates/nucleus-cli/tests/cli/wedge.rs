@@ -389,7 +389,7 @@ mod killed {
     #[test]
     fn a_killed_run_is_named_and_the_others_go_on() {
         let folder = folder();
-        scene(folder.path(), 60, "");
+        scene(folder.path(), 1000, "");
         let child = start(folder.path());
         let lock = folder.path().join("w/runs/0000.mcap.part");
         wait_for("the run does not begin", || lock.exists());
