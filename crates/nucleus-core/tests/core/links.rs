@@ -169,6 +169,22 @@ fn glue_breaks_at_the_stated_load_on_any_mesh() {
 }
 
 #[test]
+fn glue_of_no_strength_does_not_pull() {
+    let mut solver: Solver<f64> = Solver::new(model([points(&[Vec3::zeros()])]), 1);
+    let link = Link::new([point(0, 0), LinkSide::Space(Vec3::x())], 0.0);
+    let constraint = ConstraintFrame {
+        formed: Some(vec![link]),
+        method: LinkMethod::Weld,
+        can_break: true,
+        glue_strength: 0.0,
+        ..ConstraintFrame::default()
+    };
+    let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(1, PHYSICAL, constraint) };
+    assert_eq!(run(&mut solver, &mut input, 2).broken_links, 1);
+    assert_eq!(solver.point(ClothId(0), 0), Vec3::zeros());
+}
+
+#[test]
 fn broken_links_heal_when_nothing_can_break_them() {
     let (upper, builder, constraint) = hung_sheets(6, LinkMethod::Weld);
     let weak = ConstraintFrame { can_break: true, glue_strength: 0.0, ..constraint };
@@ -375,6 +391,57 @@ fn a_sliding_point_leaves_a_surface_that_deforms_by_less_than_its_thickness() {
         assert!(height > 0.0 && height < 0.02, "frame {frame}: {height} m above the ball");
     }
     assert!(turned > 4.0, "it has gone round the ball by {turned} rad");
+}
+
+#[test]
+fn a_point_that_slides_off_an_open_border_gains_no_energy() {
+    let (sin, cos) = (std::f64::consts::PI / 6.0).sin_cos();
+    let (down, across) = (Vec3::new(cos, -sin, 0.0), Vec3::z());
+    let mut slope = grid(3, 3, down, across);
+    slope.positions.iter_mut().for_each(|place| *place -= (down + across) * 0.5);
+    let start = Vec3::new(sin, cos, 0.0) * 0.05;
+    for evaluations in [24.0, 96.0, 384.0] {
+        let mut builder = model([points(&[start])]);
+        builder.collider(Collider { surface: slope.clone() }).expect("a good mesh");
+        let corners = slope.faces.triangles().find(|corners| corners.contains(&4)).expect("the middle");
+        let weights = corners.map(|corner| if corner == 4 { 1.0 } else { 0.0 });
+        let foot = LinkSide::Collider { collider: ColliderId(0), points: corners.map(PointId), weights };
+        let normal = {
+            let [a, b, c] = corners.map(|corner| slope.positions[corner as usize]);
+            (b - a).cross(&(c - a))
+        };
+        let rest = 0.05 * normal.y.signum();
+        let link = Link { on_surface: true, ..Link::new([point(0, 0), foot], rest) };
+        let constraint = ConstraintFrame {
+            formed: Some(vec![link]),
+            method: LinkMethod::Weld,
+            slides: true,
+            single_sided: true,
+            ..ConstraintFrame::default()
+        };
+        let mut input = tied(1, ResistanceModel::Physical { evaluations }, constraint);
+        input.colliders = vec![ColliderFrame::default()];
+        let (gravity, mut solver) = (input.gravity, Solver::<f64>::new(builder, 1));
+        let energy = |solver: &Solver<f64>| {
+            let mut velocities = Vec::new();
+            solver.velocities(ClothId(0), 1.0, &mut velocities);
+            let speed = Vec3::from(velocities[0].map(f64::from)).norm();
+            speed * speed / 2.0 - gravity.dot(&solver.point(ClothId(0), 0))
+        };
+        let before = energy(&solver);
+        let mut lowest = 0.0f64;
+        for number in 0..96 {
+            run(&mut solver, &mut input, 1);
+            let place = solver.point(ClothId(0), 0);
+            lowest = lowest.min(place.y);
+            assert!(
+                energy(&solver) < before + 0.02,
+                "{evaluations}, frame {number}: {} at {place}",
+                energy(&solver)
+            );
+        }
+        assert!(lowest < -0.25, "it reaches the border: {lowest}");
+    }
 }
 
 #[test]

@@ -53,6 +53,18 @@ impl<R: Real> ConstraintLinks<R> {
         }
     }
 
+    /// Breaks the links that carry nothing, before they pull. Whether there were any.
+    pub(super) fn break_unglued(&mut self, settings: &ConstraintFrame) -> bool {
+        let mut any = false;
+        for (link, broken) in self.links.iter().zip(&mut self.broken) {
+            let carries = breaking_load(settings.glue_strength * link.glue) * settings.glue_scale > 0.0
+                || link.fold.is_some();
+            any |= !carries && !*broken;
+            *broken |= !carries;
+        }
+        any
+    }
+
     /// Breaks the links whose load in a substep of `length` seconds was above theirs; of the welds round a point, those
     /// along which it tears. Whether there were any.
     fn break_links(&mut self, settings: &ConstraintFrame, state: &State<R>, length: f64) -> bool {

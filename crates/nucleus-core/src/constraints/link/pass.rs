@@ -45,6 +45,7 @@ pub fn form_links<R: Real>(links: &mut Links<R>, model: &Model<R>, frame: &Frame
             own.broken.fill(false);
             changed = true;
         }
+        changed |= settings.can_break && own.break_unglued(settings);
         own.glue_strength = settings.glue_strength;
     }
     changed

@@ -131,7 +131,7 @@ impl<R: Real> Placed<'_, R> {
 
     /// The unit normal at a place: of its face, or interpolated between those of the corners, so that it changes smoothly
     /// where links slide on the surface itself.
-    fn normal(&self, corners: [u32; 3], weights: [f64; 3], is_smooth: bool) -> Point {
+    pub(super) fn normal(&self, corners: [u32; 3], weights: [f64; 3], is_smooth: bool) -> Point {
         let of_face = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|corner| self.position(corner));
             (b - a).cross(&(c - a))

@@ -3,7 +3,8 @@
 //! A sliding link moves its foot, the place on the face, to the nearest place of the surface in every time step. It walks
 //! from face to neighbouring face and so stays on the sheet where it began. Friction takes from the motion along the face
 //! in a time step, and never pulls towards a place: a foot that lagged behind and then crossed an edge of a folded face
-//! would pull with energy that nothing supplied. These rows are swept one by one in their order: a foot may move to any
+//! would pull with energy that nothing supplied. At an open border a point that keeps a distance goes round the edge, and then
+//! is on the other side: held on its first one, it would be drawn through the face. These rows are swept one by one in their order: a foot may move to any
 //! face of the surface, so they have no lasting colours.
 
 use crate::constraints::stretch::LinkStrength;
@@ -44,9 +45,15 @@ impl<R: Real> ConstraintLinks<R> {
                 let nearest = placed.nearest(place, corners, weights);
                 let line = (place - placed.at(nearest.0, nearest.1)).try_normalize(0.0);
                 let beside = line.filter(|line| placed.is_beside(nearest, *line));
-                (placed.side(nearest.0, nearest.1), beside)
+                let normal = placed.normal(nearest.0, nearest.1, false);
+                let is_other_side = line.is_some_and(|line| line.dot(&normal) * link.rest < 0.0);
+                let is_round = self.surface[k].beside.is_some() && beside.is_none() && is_other_side;
+                (placed.side(nearest.0, nearest.1), beside, is_round)
             });
-            if let Some((side, beside)) = moved {
+            if let Some((side, beside, is_round)) = moved {
+                if is_round {
+                    self.links[at].rest = -self.links[at].rest;
+                }
                 self.links[at].sides[1] = side;
                 self.surface[k].beside = beside;
                 self.surface[k].ends = Ends::new(&self.links[at], models.0);
