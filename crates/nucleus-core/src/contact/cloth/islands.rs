@@ -10,15 +10,13 @@ use crate::union_find::UnionFind;
 
 /// Grows a mask of cloths until it holds whole islands.
 pub fn grow_to_islands<R: Real>(contacts: &ClothContacts<R>, mask: &mut [bool]) {
-    let mut has_grown = true;
-    while has_grown {
-        has_grown = false;
-        for [a, b] in contacts.cache.cloth_pairs(&contacts.materials) {
-            if mask[a] != mask[b] {
-                (mask[a], mask[b]) = (true, true);
-                has_grown = true;
-            }
-        }
+    let mut islands = islands(Some(contacts), mask.len());
+    let mut is_masked = vec![false; mask.len()];
+    for cloth in (0..mask.len()).filter(|cloth| mask[*cloth]) {
+        is_masked[islands.find(cloth as u32) as usize] = true;
+    }
+    for (cloth, mask) in mask.iter_mut().enumerate() {
+        *mask = is_masked[islands.find(cloth as u32) as usize];
     }
 }
 
@@ -50,7 +48,7 @@ pub fn keep_momentum<R: Real>(pass: &mut ContactPass<'_, R>) {
 /// Whether each cloth is in an island that only its own cloths can push.
 fn alone<R: Real>(pass: &ContactPass<'_, R>) -> Vec<bool> {
     let cloths = pass.model.cloths.len();
-    let mut islands = islands(pass);
+    let mut islands = islands(pass.contact.cloth_contacts.as_ref(), cloths);
     let mut is_alone = vec![true; cloths];
     for cloth in 0..cloths {
         is_alone[islands.find(cloth as u32) as usize] &= !is_near_obstacle(pass, cloth);
@@ -74,10 +72,9 @@ fn is_near_obstacle<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
         || others.into_iter().any(|material| material.mobility != [R::ONE; 2])
 }
 
-fn islands<R: Real>(pass: &ContactPass<'_, R>) -> UnionFind {
-    let cloths = pass.model.cloths.len();
+fn islands<R: Real>(contacts: Option<&ClothContacts<R>>, cloths: usize) -> UnionFind {
     let mut islands = UnionFind::new(cloths);
-    if let Some(ClothContacts { cache, materials, .. }) = &pass.contact.cloth_contacts {
+    if let Some(ClothContacts { cache, materials, .. }) = contacts {
         cache.cloth_pairs(materials).for_each(|[a, b]| islands.union(a as u32, b as u32));
     }
     islands
@@ -85,8 +82,8 @@ fn islands<R: Real>(pass: &ContactPass<'_, R>) -> UnionFind {
 
 /// The mean motion in the time step of each cloth's island, in metres, without depenetration.
 fn mean_motions<R: Real>(pass: &ContactPass<'_, R>) -> Vec<[R; 3]> {
-    let ContactPass { model, state, .. } = pass;
-    let mut islands = islands(pass);
+    let ContactPass { model, state, contact, .. } = pass;
+    let mut islands = islands(contact.cloth_contacts.as_ref(), model.cloths.len());
     // Mass, and its motion; infinite where a point is pinned.
     let mut sums = vec![[0.0f64; 4]; model.cloths.len()];
     for (index, cloth) in model.cloths.iter().enumerate() {
