@@ -3,8 +3,9 @@
 //! The signed distance is that of Zhu & Bridson (2005, "Animating sand as a fluid", §5): from a place to the weighted mean of
 //! the particles around it, less the radius that a particle has on its own. Surface nets (Gibson 1998, "Constrained elastic
 //! surface nets") make the mesh: a point in each cell of a grid that the surface passes, at the mean of where it crosses the
-//! edges of the cell, and a quad across each edge that it crosses. The grid is stored in blocks about the particles, so a
-//! spray that is scattered widely takes no more memory than as many particles close together.
+//! edges of the cell, and a quad across each edge that it crosses. The grid is stored in blocks about the particles, so its
+//! memory grows with the space that is near any: a particle far from all others takes about 100 kB, and one of many close
+//! together about 200 bytes.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek};
