@@ -8,7 +8,7 @@ use super::value::Choice;
 /// Attributes without effect on an object that the solver does not move.
 #[rustfmt::skip] // a name per line would be a page of its own
 const NO_USE_TO_COLLIDERS: &[&str] = &[
-    "acceleration", "position0", "velocity0", "mass", "startVelocities", "damp", "dampMap", "dampPerVertex",
+    "acceleration", "position0", "velocity0", "mass", "startPositions", "startVelocities", "damp", "dampMap", "dampPerVertex",
     "selfCollisionFlag", "maxSelfCollisionIterations", "maxIterations", "pointMass", "massMap", "massPerVertex",
     "restLengthScale", "localForce", "localWind", "selfCollide", "selfAttract", "dampMapType", "massMapType",
     "nextState", "cacheFile",

@@ -6,11 +6,11 @@ use nalgebra::Vector3;
 use nucleus_core::{ClothId, Pin, PointId, Sanitized};
 
 use crate::attributes::dynamic_constraint;
-use crate::graph::{EvalContext, NodeId};
+use crate::graph::EvalContext;
 
 use super::compiler::Compiler;
 use super::constraints::kinds::Values;
-use super::constraints::member::MemberObject;
+use super::constraints::member::{Member, MemberObject};
 use super::program::{EvaluationInterval, NucleusProgram};
 use super::sources::{AttachedPoint, AttachmentSource, EmitterState};
 
@@ -52,8 +52,14 @@ impl Compiler<'_> {
                 continue;
             }
             let node = self.scene.graph.node(id);
-            let points = self.attached_points(id);
+            let members = self.members_of(id);
+            let points = self.attached_points(&members);
             let place = self.scene.source.place(node.name());
+            if points.is_empty() && !members.is_empty() {
+                let message = format!("`{}` holds colliders only, which no constraint moves", node.name());
+                let warning = self.findings.warning(&place, message);
+                warning.help("colliders follow their meshes; name cloth or particles");
+            }
             if points.iter().any(|held| taken.contains(&(held.cloth, held.point))) {
                 let message =
                     format!("`{}` takes hold of points that another constraint may hold", node.name());
@@ -72,10 +78,10 @@ impl Compiler<'_> {
     }
 
     /// The points of a constraint, each once, in the order of its components.
-    fn attached_points(&mut self, constraint: NodeId) -> Vec<AttachedPoint> {
+    fn attached_points(&self, members: &[Member]) -> Vec<AttachedPoint> {
         let mut seen = BTreeSet::new();
         let mut held = Vec::new();
-        for member in self.members_of(constraint) {
+        for member in members {
             let MemberObject::Cloth(cloth) = member.object else { continue };
             for &point in member.elements.corners() {
                 if seen.insert((cloth, point)) {

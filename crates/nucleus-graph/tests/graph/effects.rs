@@ -285,6 +285,10 @@ fn nodes_that_act_on_nothing_are_warned_of() {
             "`f` acts on colliders only, which no force moves",
         ),
         (
+            r#""b": nRigid(inputMesh: "m2"), "m2": polyCube(), "k": dynamicConstraint(type: transform, components: ["b"])"#,
+            "`k` holds colliders only, which no constraint moves",
+        ),
+        (
             r#""f": airField(target: "q", direction: (0, 0, 0), inheritVelocity: 0, componentOnly: true)"#,
             "`f` acts on nothing: its `direction` is zero",
         ),
