@@ -55,7 +55,7 @@ use crate::particles::slowing::slow_particles;
 use crate::report::diagnostics::report;
 use crate::schedule::adaptive::splits;
 use crate::schedule::sweep_direction::alternating_cloths;
-use crate::schedule::{Pass, PassTime, Schedule, TimeStep};
+use crate::schedule::{Pass, PassTime, Schedule, SplitPlans, TimeStep};
 use crate::solver::{CompiledReal, Solver};
 use crate::state::kinematics::update_anchors;
 
@@ -164,6 +164,7 @@ fn solve_substeps<R: CompiledReal>(
 ) -> ControlFlow<()> {
     let max_speeds = max_speeds(&solver.model.cloths, &solver.state, frame);
     let alternates = alternating_cloths(&solver.model.cloths, &solver.contact, &solver.links, frame);
+    let mut plans = SplitPlans::new(schedule);
     for substep in 1..=schedule.substeps {
         observer.enter(Stage::Normals);
         begin_substep(solver, frame, schedule, substep);
@@ -171,11 +172,11 @@ fn solve_substeps<R: CompiledReal>(
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
             let direction = schedule.direction(step, solver.state.frames);
-            let schedule = schedule.split(frame, splits);
+            let schedule = plans.get(frame, splits);
             for (index, span) in schedule.time_steps(step) {
                 let now = TimeStep {
                     frame,
-                    schedule: &schedule,
+                    schedule,
                     index,
                     span,
                     direction,

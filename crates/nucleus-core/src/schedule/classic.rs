@@ -21,9 +21,7 @@ pub fn classic<R: Real>(
 ) -> Vec<Pass> {
     let mut due: Vec<(f64, PassOrSweep<R>)> = Vec::new();
     for (cloth, settings) in frame.cloths.iter().enumerate() {
-        for (count, effect) in classic_effects(settings) {
-            let Share { sweeps, strength } = share(count, substep);
-            let effect = effect(R::from_f64(strength * CLASSIC_SHARE));
+        for (sweeps, effect) in classic_effects(settings, substep) {
             let due_time = |k: u32| (f64::from(k) + 0.5) / f64::from(sweeps);
             due.extend((0..sweeps).map(|k| (due_time(k), PassOrSweep::Sweep(Sweep { cloth, effect }))));
         }
@@ -63,37 +61,32 @@ enum PassOrSweep<R> {
     Pass(Pass),
 }
 
-/// Makes an effect from its strength.
-type EffectOfStrength<R> = Box<dyn Fn(R) -> Effect<R>>;
-
-/// The effects of a cloth with their counts. Stretch and compression sweep the same links, each on its own side of
-/// rest.
-fn classic_effects<R: Real>(cloth: &ClothFrame) -> [(f64, EffectOfStrength<R>); 4] {
-    let rest_scale = R::from_f64(cloth.rest_length_scale);
-    let rigid = Sides { above: R::ZERO, below: R::ZERO };
-    let angles = AngleStrength::of(&cloth.bending);
-    let links = move |above: R, below: R| LinkStrength {
-        share: Sides { above, below },
-        compliance: rigid,
-        rest_scale,
+/// The effects of a cloth with their sweeps in a substep. Stretch and compression sweep the same links, each on its own side
+/// of rest.
+fn classic_effects<R: Real>(cloth: &ClothFrame, substep: f64) -> [(u32, Effect<R>); 4] {
+    let share_of = |count: f64| {
+        let Share { sweeps, strength } = share(count, substep);
+        (sweeps, R::from_f64(strength * CLASSIC_SHARE))
     };
+    let links = |above: R, below: R| LinkStrength {
+        share: Sides { above, below },
+        compliance: Sides { above: R::ZERO, below: R::ZERO },
+        rest_scale: R::from_f64(cloth.rest_length_scale),
+    };
+    let rigid = WeaveStrength::rigid;
+    let [stretch, compression, shear, bend] = [
+        cloth.stretch_resistance,
+        cloth.compression_resistance,
+        cloth.shear_resistance,
+        cloth.bend_resistance,
+    ]
+    .map(share_of);
+    let bending = BendStrength { share: bend.1, compliance: R::ZERO };
     [
-        (
-            cloth.stretch_resistance,
-            Box::new(move |share| Effect::Stretch(links(share, R::ZERO), WeaveStrength::rigid())),
-        ),
-        (
-            cloth.compression_resistance,
-            Box::new(move |share| Effect::Stretch(links(R::ZERO, share), WeaveStrength::rigid())),
-        ),
-        (
-            cloth.shear_resistance,
-            Box::new(move |share| Effect::Shear(links(share, share), WeaveStrength::rigid())),
-        ),
-        (
-            cloth.bend_resistance,
-            Box::new(move |share| Effect::Bend(BendStrength { share, compliance: R::ZERO }, angles)),
-        ),
+        (stretch.0, Effect::Stretch(links(stretch.1, R::ZERO), rigid())),
+        (compression.0, Effect::Stretch(links(R::ZERO, compression.1), rigid())),
+        (shear.0, Effect::Shear(links(shear.1, shear.1), rigid())),
+        (bend.0, Effect::Bend(bending, AngleStrength::of(&cloth.bending))),
     ]
 }
 

@@ -8,9 +8,10 @@
 //! * **Physical** (small steps: Macklin et al. 2019): a stiffness. A substep has many time steps, each with one sweep
 //!   of every effect, which converges faster than as many sweeps of one step.
 //!
-//! A time step ends with the contact passes and, where cloth collides with cloth or colliders, with the safeguard. All time steps of a frame have the same passes, because
-//! passes that change from step to step feed energy in. Adaptive substepping splits single time steps
-//! ([`Schedule::split`]): `adaptive.rs` finds how often, and the schedule says which passes and intervals that gives.
+//! A time step ends with the contact passes and, where cloth collides with cloth or colliders, with the safeguard. All time
+//! steps of a frame have the same passes, because passes that change from step to step feed energy in. Adaptive substepping
+//! splits single time steps ([`SplitPlans`]): `adaptive.rs` finds how often, and the schedule says which passes and intervals
+//! that gives.
 //!
 //! | You want to know… | Read |
 //! |---|---|
@@ -34,4 +35,4 @@ pub mod sweep_direction;
 pub use pass::{
     Direction, Effect, Pass, PassTime, StepInterval, Sweep, TimeInterval, WholeEffect, WholeSweep,
 };
-pub use plan::{Schedule, TimeStep};
+pub use plan::{Schedule, SplitPlans, TimeStep};

@@ -1,7 +1,5 @@
 //! The plan of a frame: its substeps and time steps, and the passes of each.
 
-use std::borrow::Cow;
-
 use crate::constraints::link::sweep::LinkSweep;
 use crate::input::frame::{ClothFrame, FrameInput, Pressure, ResistanceModel};
 use crate::input::links::LinkMethod;
@@ -36,6 +34,32 @@ pub struct Schedule<R> {
     pub passes: Vec<Pass>,
 }
 
+/// The plans of the time steps of a frame, by how many each is split into. Each is made once.
+pub struct SplitPlans<'a, R> {
+    whole: &'a Schedule<R>,
+    split: Vec<Schedule<R>>,
+}
+
+impl<'a, R: Real> SplitPlans<'a, R> {
+    /// None but that of the frame.
+    pub fn new(whole: &'a Schedule<R>) -> Self {
+        Self { whole, split: Vec::new() }
+    }
+
+    /// The plan of a time step that is split into so many.
+    pub fn get(&mut self, frame: &FrameInput, splits: u32) -> &Schedule<R> {
+        if splits == self.whole.splits {
+            return self.whole;
+        }
+        let known = self.split.iter().position(|plan| plan.splits == splits);
+        let at = known.unwrap_or_else(|| {
+            self.split.push(self.whole.split(frame, splits));
+            self.split.len() - 1
+        });
+        &self.split[at]
+    }
+}
+
 impl<R: Real> Schedule<R> {
     /// Plans a frame.
     pub fn new(frame: &FrameInput) -> Self {
@@ -53,15 +77,12 @@ impl<R: Real> Schedule<R> {
     }
 
     /// The plan of a time step that is split into so many (adaptive substepping): the passes of each, at their length.
-    pub fn split(&self, frame: &FrameInput, splits: u32) -> Cow<'_, Self> {
-        if splits == self.splits {
-            return Cow::Borrowed(self);
-        }
+    fn split(&self, frame: &FrameInput, splits: u32) -> Self {
         let h = self.h / f64::from(splits);
         let (sweeps, wholes, links, passes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut split = Self { splits, h, sweeps, wholes, links, passes, ..*self };
         split.plan(frame);
-        Cow::Owned(split)
+        split
     }
 
     /// The time steps that a time step of the frame is split into, in order: the index of each, counted from the start
