@@ -19,8 +19,10 @@ const SIGNATURES: [(&[u8], u64, u8); 3] = [
     // Name of a redundant copy, behind two times and its length.
     (b"nucleus.copy", RECORD_HEAD + 20, op::ATTACHMENT),
 ];
-/// Bytes that are searched at once.
-const SEARCH_BLOCK: u64 = 1 << 20;
+/// Bytes that are searched at once, at first and at most: signatures may follow each other closely, or not at all.
+const SEARCH_BLOCK: [u64; 2] = [1 << 12, 1 << 20];
+/// How often the bytes of a file may be read for records that prove invalid: a file may state many that overlap.
+const MAX_READS: u64 = 4;
 /// Longest body of a small record; a longer one is damaged.
 const MAX_SMALL_BODY: u64 = 1 << 28;
 
@@ -34,8 +36,8 @@ struct RecordPlace {
 
 /// Indexes all whole records.
 ///
-/// Reads every frame once, so it takes as long as reading the file. The stated end of a record counts only if the
-/// record is valid; behind an invalid one the search continues at the next signature.
+/// Reads every frame once, so it takes as long as reading the file, and a few times that at most. The stated end of a record
+/// counts only if the record is valid; behind an invalid one the search continues at the next signature.
 pub(crate) fn read(file: &mut (impl Read + Seek), length: u64) -> io::Result<(FileIndex, CorruptionReport)> {
     let mut file_index = FileIndex::default();
     let mut chunk = Chunk::default();
@@ -43,6 +45,7 @@ pub(crate) fn read(file: &mut (impl Read + Seek), length: u64) -> io::Result<(Fi
     let mut corruption = CorruptionReport { truncated: true, ..CorruptionReport::default() };
     // End of the last valid record: the bytes behind it belong to none.
     let mut sound = position.min(length);
+    let mut may_waste = length.saturating_mul(MAX_READS);
     loop {
         let record = record_at(file, position, length)?;
         if let Some(place) = record.filter(|place| place.opcode == op::DATA_END)
@@ -51,8 +54,12 @@ pub(crate) fn read(file: &mut (impl Read + Seek), length: u64) -> io::Result<(Fi
             corruption = CorruptionReport { index: true, ..CorruptionReport::default() };
             break;
         }
-        let is_taken = match record {
-            Some(place) => add_record(file, place, &mut file_index, &mut chunk)?,
+        let is_taken = match record.filter(|place| place.end - place.begin <= may_waste) {
+            Some(place) => {
+                let is_valid = add_record(file, place, &mut file_index, &mut chunk)?;
+                may_waste -= if is_valid { 0 } else { place.end - place.begin };
+                is_valid
+            }
             None => false,
         };
         match record.filter(|_| is_taken) {
@@ -133,12 +140,13 @@ fn is_followed_by_index(file: &mut (impl Read + Seek), place: RecordPlace, lengt
 /// Start of the next record with a known signature, from `position` on.
 fn next_signature(file: &mut (impl Read + Seek), position: u64, length: u64) -> io::Result<Option<u64>> {
     let longest = SIGNATURES.iter().map(|(mark, ..)| mark.len()).max().unwrap_or(0) as u64;
+    let [mut block, most] = SEARCH_BLOCK;
     let mut begin = position;
     let mut bytes = Vec::new();
     while begin < length {
         bytes.clear();
         file.seek(SeekFrom::Start(begin))?;
-        file.take(SEARCH_BLOCK).read_to_end(&mut bytes)?;
+        file.take(block).read_to_end(&mut bytes)?;
         for at in 0..bytes.len() {
             let marks = SIGNATURES.iter().filter(|(mark, ..)| bytes[at..].starts_with(mark));
             for &(_, before, opcode) in marks {
@@ -149,11 +157,12 @@ fn next_signature(file: &mut (impl Read + Seek), position: u64, length: u64) -> 
                 }
             }
         }
-        if (bytes.len() as u64) < SEARCH_BLOCK {
+        if (bytes.len() as u64) < block {
             break;
         }
         // A signature may lie across two blocks.
-        begin += SEARCH_BLOCK - longest;
+        begin += block - longest;
+        block = (2 * block).min(most);
     }
     Ok(None)
 }
@@ -169,4 +178,51 @@ fn record_at(file: &mut (impl Read + Seek), position: u64, length: u64) -> io::R
     let body = u64::from_le_bytes(head[1..].try_into().expect("eight bytes"));
     let end = (position + RECORD_HEAD).checked_add(body).filter(|&end| end <= length);
     Ok(end.map(|end| RecordPlace { opcode: head[0], begin: position, end }))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    /// A file that counts the bytes that are read of it.
+    struct Counted {
+        file: Cursor<Vec<u8>>,
+        bytes: u64,
+    }
+
+    impl Read for Counted {
+        fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+            let read = self.file.read(out)?;
+            self.bytes += read as u64;
+            Ok(read)
+        }
+    }
+
+    impl Seek for Counted {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.file.seek(to)
+        }
+    }
+
+    #[test]
+    fn heads_of_records_that_are_none_cost_a_few_kilobytes_each() {
+        let heads = 4000;
+        let mut file = MAGIC.to_vec();
+        let length = MAGIC.len() + heads * 25;
+        for _ in 0..heads {
+            // Metadata whose name and contents reach to the end of the file.
+            let body = (length - file.len() - RECORD_HEAD as usize) as u64;
+            file.push(op::METADATA);
+            file.extend(body.to_le_bytes());
+            file.extend(8u32.to_le_bytes());
+            file.extend(b"nucleus.");
+            file.extend((body as u32).saturating_sub(16).to_le_bytes());
+        }
+        let mut counted = Counted { file: Cursor::new(file), bytes: 0 };
+        let (_, corruption) = read(&mut counted, length as u64).unwrap();
+        assert!(corruption.truncated);
+        assert!(counted.bytes < 8192 * heads as u64, "{} bytes", counted.bytes);
+    }
 }
