@@ -33,6 +33,7 @@ mod rigid_bodies;
 mod rotation;
 mod scenes;
 mod self_collision;
+mod sliding;
 mod soft_bodies;
 mod tears;
 mod tethers;
