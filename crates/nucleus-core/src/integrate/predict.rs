@@ -19,7 +19,8 @@ use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::TimeStep;
 use crate::state::State;
 
-/// Upper estimate of the speed of each cloth in this frame, in m/s per axis: its largest now, and what gravity adds.
+/// Estimate of the largest speed of each cloth in this frame, in m/s per axis: its largest now, and what gravity adds. Fields,
+/// wind and pressure may make it faster.
 pub fn max_speeds<R: Real>(cloths: &[ClothModel<R>], state: &State<R>, frame: &FrameInput) -> Vec<f64> {
     let of_cloth = |points: Range<u32>| {
         let rows = &state.velocity[points.start as usize..points.end as usize];
