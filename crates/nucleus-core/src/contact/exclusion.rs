@@ -39,10 +39,11 @@ pub fn update_pair_filter<R: Real>(
         }
     }
     // What was excluded until now may be inside a collider.
-    for list in &mut contact.collider_contacts {
-        let mut points = model.cloths[list.cloth].points();
-        if all || points.any(|row| contact.pair_filter.differs_at(&before, row as usize)) {
-            list.depenetration.begin_again();
+    for (cloth, model) in model.cloths.iter().enumerate() {
+        let excludes_otherwise = |row: u32| contact.pair_filter.excludes_otherwise_at(&before, row as usize);
+        if all || model.points().any(excludes_otherwise) {
+            let of_cloth = contact.lists_of(cloth);
+            contact.collider_contacts[of_cloth].iter_mut().for_each(|list| list.depenetration.begin_again());
         }
     }
     // What was welded and excluded until now may intersect.

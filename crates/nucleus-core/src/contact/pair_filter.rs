@@ -91,6 +91,7 @@ impl PairFilter {
     }
 
     /// The sides that all of these points belong to, which then do not collide as one element.
+    #[inline]
     pub fn sides_of_all(&self, points: impl Iterator<Item = u32>) -> SidesOfAll<'_> {
         let sides = match self.cloths.is_empty() {
             true => [0; 2],
@@ -145,8 +146,13 @@ impl PairFilter {
     /// Whether another filter treats a row otherwise.
     pub fn differs_at(&self, other: &Self, row: usize) -> bool {
         let cluster = |filter: &Self| filter.clusters.get(row).copied().unwrap_or(row as u32);
+        cluster(self) != cluster(other) || self.excludes_otherwise_at(other, row)
+    }
+
+    /// Whether another filter has other exclusions of a row.
+    pub fn excludes_otherwise_at(&self, other: &Self, row: usize) -> bool {
         let sides = |filter: &Self| filter.cloths.get(row).copied().unwrap_or_default();
-        cluster(self) != cluster(other) || sides(self) != sides(other)
+        sides(self) != sides(other)
     }
 
     /// Whether another filter treats a collider otherwise.
@@ -215,11 +221,13 @@ impl SidesOfAll<'_> {
     }
 
     /// Whether they do not collide with an element of a collider.
+    #[inline]
     pub fn exclude_collider(&self, collider: usize, theirs: &[u32]) -> bool {
         !self.filter.cloths.is_empty() && meet(self.sides, self.filter.of_collider(collider, theirs))
     }
 
     /// Whether they do not collide with the ground plane.
+    #[inline]
     pub fn exclude_ground(&self) -> bool {
         meet(self.sides, self.filter.everything)
     }

@@ -3,9 +3,9 @@
 //! A sliding link moves its foot, the place on the face, to the nearest place of the surface in every time step. It walks
 //! from face to neighbouring face and so stays on the sheet where it began. Friction takes from the motion along the face
 //! in a time step, and never pulls towards a place: a foot that lagged behind and then crossed an edge of a folded face
-//! would pull with energy that nothing supplied. At an open border a point that keeps a distance goes round the edge, and then
-//! is on the other side: held on its first one, it would be drawn through the face. These rows are swept one by one in their order: a foot may move to any
-//! face of the surface, so they have no lasting colours.
+//! would pull with energy that nothing supplied. At an open border a point that keeps a distance goes round the edge, and
+//! then is on the other side: held on its first one, it would be drawn through the face. These rows are swept one by one in
+//! their order: a foot may move to any face of the surface, so they have no lasting colours.
 
 use crate::constraints::stretch::LinkStrength;
 use crate::contact::collider::ColliderState;

@@ -6,6 +6,7 @@
 //! step had made it, it let a liquid leave a floor that starts at 8 m/s with 29 m/s, and one that a piston left no room
 //! reached 37 km/s.
 
+use crate::math::{dot, sub};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
@@ -86,7 +87,8 @@ impl Excess {
             for (out, at) in out.iter_mut().zip(range) {
                 let place = positions[measured[at as usize] as usize];
                 grid.visit_runs(grid.cell(place), |run| {
-                    *out += sorted[run].iter().map(|&other| weight(distance(place, other))).sum::<f32>();
+                    let apart = sorted[run].iter().map(|&other| sub(place, other));
+                    *out += apart.map(|apart| weight(dot(apart, apart).sqrt())).sum::<f32>();
                 });
                 walls.near(place, |density, _, _| *out += density);
             }
@@ -100,11 +102,6 @@ impl Excess {
     pub fn begin(&mut self) {
         self.left.clone_from(&self.before);
     }
-}
-
-fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
-    let [x, y, z] = std::array::from_fn(|axis| a[axis] - b[axis]);
-    (x * x + y * y + z * z).sqrt()
 }
 
 #[cfg(test)]
