@@ -81,7 +81,7 @@ pub use read::diff::{Comparison, Difference, PointDifference, compare};
 pub use read::playback::{Playback, Sizes};
 pub use read::recover::{RecoverError, Recovered};
 pub use read::time_index::TimeSample;
-pub use run::{Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source, SurfaceShape};
+pub use run::{COS_HARD_EDGE, Detail, ObjectInfo, ObjectKind, Packing, Plane, RunInfo, Source, SurfaceShape};
 pub use selections::SelectedPoints;
 pub use shell::shell_word;
 pub use texture_coordinates::TextureCoordinates;

@@ -228,6 +228,9 @@ impl RunInfo {
     }
 }
 
+/// Cosine of 50 degrees: faces of a collider whose normals differ by more meet in a hard edge. The player has the same number.
+pub const COS_HARD_EDGE: f32 = 0.643;
+
 /// The role of an object in the solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ObjectKind {

@@ -3,11 +3,9 @@
 
 use std::collections::HashMap;
 
-use nucleus_cache::{ObjectInfo, ObjectKind};
+use nucleus_cache::{COS_HARD_EDGE, ObjectInfo, ObjectKind};
 use nucleus_core::Faces;
-
-/// Cosine of 50 degrees: faces whose normals differ by more meet in a hard edge, as in pictures and in the player.
-const COS_HARD_EDGE: f32 = 0.643;
+use nucleus_core::nalgebra::Vector3;
 
 /// The vertices of a mesh whose faces stay.
 pub(crate) struct Vertices {
@@ -54,8 +52,7 @@ impl Vertices {
     /// in the index of their texture coordinates, if there are any.
     fn split(faces: &Faces, points: usize, hard: Option<&[[f32; 3]]>, uvs: &[u32]) -> Self {
         let around = faces_of_points(faces, points);
-        let units: Option<Vec<_>> =
-            hard.map(|positions| areas(faces, positions).into_iter().map(unit).collect());
+        let units: Option<Vec<_>> = hard.map(|positions| areas(faces, positions).iter().map(unit).collect());
         let mut all = Self {
             points: Vec::new(),
             uvs: Vec::new(),
@@ -67,7 +64,9 @@ impl Vertices {
         for (own, face) in (0..).zip(faces.iter()) {
             let vertices = face.iter().map(|&point| {
                 let meets_smoothly = |other: &u32| {
-                    let is_smooth = |units: &Vec<_>| is_smooth(units[own as usize], units[*other as usize]);
+                    let is_smooth = |units: &Vec<Vector3<f32>>| {
+                        units[own as usize].dot(&units[*other as usize]) >= COS_HARD_EDGE
+                    };
                     *other == own || units.as_ref().is_none_or(is_smooth)
                 };
                 let group: Vec<u32> = around[point as usize].iter().copied().filter(meets_smoothly).collect();
@@ -107,8 +106,8 @@ impl Vertices {
         let of_vertex = self.ends.iter().map(|&end| {
             let around = &self.around[first..end as usize];
             first = end as usize;
-            let sum = around.iter().fold([0.0; 3], |sum, &face| plus(sum, areas[face as usize]));
-            if sum == [0.0; 3] { [0.0, 1.0, 0.0] } else { unit(sum) }
+            let sum: Vector3<f32> = around.iter().map(|&face| areas[face as usize]).sum();
+            sum.try_normalize(0.0).unwrap_or_else(Vector3::y).into()
         });
         of_vertex.collect()
     }
@@ -122,37 +121,18 @@ fn faces_of_points(faces: &Faces, points: usize) -> Vec<Vec<u32>> {
     around
 }
 
-/// Twice the area of each face, along its normal (Newell).
-fn areas(faces: &Faces, positions: &[[f32; 3]]) -> Vec<[f32; 3]> {
+/// Twice the area of each face, along its normal.
+fn areas(faces: &Faces, positions: &[[f32; 3]]) -> Vec<Vector3<f32>> {
     let area = |face: &[u32]| {
-        let place = |k: usize| positions[face[k % face.len()] as usize];
-        let from_first = |k: usize| minus(place(k), place(0));
-        (1..face.len().saturating_sub(1))
-            .map(|k| cross(from_first(k), from_first(k + 1)))
-            .fold([0.0; 3], plus)
+        let place = |k: usize| Vector3::from(positions[face[k] as usize]);
+        let from_first = |k: usize| place(k) - place(0);
+        (1..face.len().saturating_sub(1)).map(|k| from_first(k).cross(&from_first(k + 1))).sum()
     };
     faces.iter().map(area).collect()
 }
 
-fn is_smooth(a: [f32; 3], b: [f32; 3]) -> bool {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] >= COS_HARD_EDGE
-}
-
-fn plus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    std::array::from_fn(|axis| a[axis] + b[axis])
-}
-
-fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
-fn cross(u: [f32; 3], v: [f32; 3]) -> [f32; 3] {
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-}
-
-fn unit(v: [f32; 3]) -> [f32; 3] {
-    let length = v.iter().map(|x| x * x).sum::<f32>().sqrt();
-    if length > 0.0 { v.map(|x| x / length) } else { v }
+fn unit(vector: &Vector3<f32>) -> Vector3<f32> {
+    vector.try_normalize(0.0).unwrap_or_default()
 }
 
 #[cfg(test)]

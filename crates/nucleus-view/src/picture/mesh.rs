@@ -1,5 +1,6 @@
 //! All objects as one mesh of triangles and spheres, with normals and colours.
 
+use nucleus_cache::COS_HARD_EDGE;
 use nucleus_core::ParticleLook;
 
 use super::camera::View;
@@ -172,9 +173,6 @@ fn collider_colour(index: usize) -> Vec3 {
     const COLOURS: [[f32; 3]; 3] = [[0.46, 0.46, 0.45], [0.38, 0.41, 0.44], [0.50, 0.46, 0.40]];
     Vec3::from(COLOURS[index % COLOURS.len()])
 }
-
-/// Cosine of 50 degrees: faces whose normals differ by more meet in a hard edge.
-const COS_HARD_EDGE: f32 = 0.643;
 
 /// A unit normal per point, weighted by the areas of its faces; +Y for a point without faces.
 fn point_normals(object: &Object) -> Vec<Vec3> {
