@@ -63,6 +63,15 @@ impl Faces {
         &self.corners
     }
 
+    /// The faces seen from behind: each begins at the same corner and goes the other way round.
+    pub fn reversed(&self) -> Self {
+        let mut corners = Vec::with_capacity(self.corners.len());
+        for face in self.iter() {
+            corners.extend(face.iter().take(1).chain(face.iter().skip(1).rev()));
+        }
+        Self { starts: self.starts.clone(), corners }
+    }
+
     /// The triangulated faces: a fan in each polygon, a quad along its first diagonal.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.iter().flat_map(|face| (2..face.len()).map(move |k| [face[0], face[k - 1], face[k]]))

@@ -83,6 +83,11 @@ impl Affine {
         self.linear * point + self.offset
     }
 
+    /// Whether it makes a mirror image, as an odd number of negative scales does.
+    pub fn mirrors(&self) -> bool {
+        self.linear.determinant() < 0.0
+    }
+
     /// This placement, followed by that of the parent.
     pub fn under(&self, parent: &Self) -> Self {
         Self { linear: parent.linear * self.linear, offset: parent.point(self.offset) }

@@ -79,6 +79,10 @@ impl Compiler<'_> {
         for position in &mut surface.positions {
             *position = placement.point(*position);
         }
+        // The outside of a mesh stays outside.
+        if placement.mirrors() {
+            surface.faces = surface.faces.reversed();
+        }
         Some((mesh, surface))
     }
 

@@ -118,14 +118,15 @@ impl Compiler<'_> {
         if let Some(source) = self.scene.graph.source(cloth, &n_cloth::REST_SHAPE_MESH) {
             let placement = self.start.placement(source);
             let shape = self.geometry.animated(self.scene, source, self.findings)?.at(&self.start);
-            let given = self.geometry.surface(self.scene, source, self.findings)?;
-            if shape.len() != input.positions.len() || given.faces != input.faces {
+            let faces = self.geometry.surface(self.scene, source, self.findings)?.faces.clone();
+            let of_input = &self.geometry.surface(self.scene, mesh, self.findings)?.faces;
+            if shape.len() != input.positions.len() || faces != *of_input {
                 let [name, source] = [cloth, source].map(|id| self.scene.graph.node(id).name());
                 let place = self.scene.source.place(&format!("{name}.restShapeMesh"));
                 let message = format!(
                     "`{source}` cannot be the rest shape of `{name}`: it has {} points and {} faces, the input mesh {} and {}",
                     shape.len(),
-                    given.faces.len(),
+                    faces.len(),
                     input.positions.len(),
                     input.faces.len()
                 );

@@ -21,7 +21,16 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
     let of = |object: &Object| {
         let (node, nucleus) = program.node_of(object.kind);
         let mesh = scene.graph.source(node, &n_base::INPUT_MESH)?;
-        let (mut values, corners) = of_mesh(scene, scene.graph.node(mesh))?;
+        let (mut values, mut corners) = of_mesh(scene, scene.graph.node(mesh))?;
+        // A mirrored mesh has its faces turned.
+        let is_mirrored = scene.graph.at(nucleus.start as f64).placement(mesh).mirrors();
+        if is_mirrored && corners.len() == object.faces.corners().len() {
+            let mut first = 0;
+            for face in object.faces.iter() {
+                corners[first + 1..first + face.len()].reverse();
+                first += face.len();
+            }
+        }
         let tearing =
             nucleus.cloths.iter().find(|cloth| cloth.node == node).and_then(|cloth| cloth.tearing.as_ref());
         // The points of the mesh as it was given, before it was split where it can tear.

@@ -10,6 +10,7 @@ mod independence;
 mod maps;
 mod materials;
 mod mesh_files;
+mod mirrored;
 mod mutations;
 mod particles;
 mod pulling;

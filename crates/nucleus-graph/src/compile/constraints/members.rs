@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use nucleus_core::{ClothId, ColliderId, ExcludedSide, Exclusion, Faces, MAX_EXCLUSIONS, PointId};
+use nucleus_core::{ClothId, ColliderId, ExcludedSide, Exclusion, Faces, MAX_EXCLUSIONS, PointId, Surface};
 
 use crate::attributes::{ElementKind, dynamic_constraint as con, n_base, n_cloth, n_component, nucleus};
 use crate::compile::compiler::Compiler;
@@ -235,12 +235,7 @@ impl Compiler<'_> {
 
     /// The faces that links may slide on besides those of the member; empty where it has them all.
     fn sheet_of(&self, member: &Member) -> Faces {
-        let faces = match member.object {
-            MemberObject::Cloth(cloth) => &self.program.model.cloths()[cloth.index()].surface.faces,
-            MemberObject::Collider(collider) => {
-                &self.program.model.colliders()[collider.index()].surface.faces
-            }
-        };
+        let faces = &self.solver_mesh(member.object).faces;
         if faces.len() > member.elements.len() { faces.clone() } else { Faces::default() }
     }
 
@@ -251,8 +246,8 @@ impl Compiler<'_> {
         target: MemberObject,
         role: Role,
     ) -> Option<Member> {
-        let (faces, points) = self.given_mesh(target);
         let mesh = self.scene.graph.source(object, &n_base::INPUT_MESH).unwrap_or(object);
+        let (faces, points) = self.given_mesh(mesh, target);
         let elements = Elements::new(&faces, points);
         let (kind, chosen) =
             self.elements_of_role(&Selected { owner: constraint, object, mesh }, component, &elements, role);
@@ -267,7 +262,7 @@ impl Compiler<'_> {
             return None;
         }
         let tearing = self.tearing_of(target);
-        let all = solver_elements(tearing, &elements, kind, &chosen);
+        let all = solver_elements(&self.solver_mesh(target).faces, tearing, &elements, kind, &chosen);
         let twins = tearing.map(|tearing| tearing.twins.clone()).unwrap_or_default();
         let number = |key| self.start.get(component, key);
         let scalars = [
@@ -312,16 +307,21 @@ impl Compiler<'_> {
         particles.filter(|_| is_whole).map(|particles| particles.capacity as u32)
     }
 
-    /// The faces and the number of points of an object as it was given: the elements of a mesh that can tear are numbered so.
-    fn given_mesh(&self, target: MemberObject) -> (Faces, usize) {
-        if let Some(tearing) = self.tearing_of(target) {
-            return (tearing.faces.clone(), tearing.points);
+    /// The faces and the number of points of a mesh as it was given, by which its elements are numbered; of particles their
+    /// number.
+    fn given_mesh(&mut self, mesh: NodeId, target: MemberObject) -> (Faces, usize) {
+        match self.geometry.surface(self.scene, mesh, self.findings) {
+            Some(surface) => (surface.faces.clone(), surface.positions.len()),
+            None => (Faces::default(), self.solver_mesh(target).positions.len()),
         }
-        let surface = match target {
+    }
+
+    /// The mesh of the solver: one that can tear is split, and one that is mirrored has its faces turned.
+    fn solver_mesh(&self, target: MemberObject) -> &Surface {
+        match target {
             MemberObject::Cloth(cloth) => &self.program.model.cloths()[cloth.index()].surface,
             MemberObject::Collider(collider) => &self.program.model.colliders()[collider.index()].surface,
-        };
-        (surface.faces.clone(), surface.positions.len())
+        }
     }
 
     fn tearing_of(&self, target: MemberObject) -> Option<&Tearing> {
@@ -373,8 +373,9 @@ impl Compiler<'_> {
     }
 }
 
-/// Elements as the solver has them: those of a mesh that can tear have its twins.
+/// Elements as the solver has them, given its faces: those of a mesh that can tear have its twins.
 fn solver_elements(
+    faces: &Faces,
     tearing: Option<&Tearing>,
     elements: &Elements<'_>,
     kind: ElementKind,
@@ -382,9 +383,9 @@ fn solver_elements(
 ) -> Faces {
     let mut all = Faces::default();
     for &at in chosen {
-        match tearing.filter(|_| kind == ElementKind::Face) {
-            Some(tearing) => all.push(tearing.split_faces().face(at as usize)),
-            None => all.push(&elements.corners(kind, at)),
+        match kind {
+            ElementKind::Face => all.push(faces.face(at as usize)),
+            _ => all.push(&elements.corners(kind, at)),
         }
     }
     // Points that were split are all of their twins.

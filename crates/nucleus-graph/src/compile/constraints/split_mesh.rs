@@ -13,9 +13,7 @@ use crate::graph::NodeId;
 /// A cloth mesh that is split where it can tear.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tearing {
-    /// The faces of the mesh as it was given.
-    pub(super) faces: Faces,
-    /// The number of its points; further points are twins.
+    /// The number of points of the mesh as it was given; further points are twins.
     pub(super) points: usize,
     /// The point that each further point was split off.
     pub(crate) twins: Vec<u32>,
@@ -116,7 +114,7 @@ impl Tearing {
             sides: sides.map(|side| side.map(&mut point)),
         };
         let creases = creased.into_iter().map(crease).collect();
-        Self { faces: faces.clone(), points, twins, split, seams, creases }
+        Self { points, twins, split, seams, creases }
     }
 
     /// A column of points, with twins where their originals are.
@@ -156,10 +154,6 @@ impl Tearing {
             twins[first..].iter().take_while(move |(original, _)| *original == point).map(|(_, twin)| *twin)
         };
         points.iter().flat_map(of).collect()
-    }
-
-    pub(super) fn split_faces(&self) -> &Faces {
-        &self.split
     }
 }
 

@@ -16,7 +16,8 @@ impl Compiler<'_> {
     /// How a cloth mesh is split by the tearable surfaces that have a part of it; `None` where nothing can tear.
     pub(crate) fn tearing(&mut self, cloth: NodeId, mesh: NodeId, surface: &Surface) -> Option<Tearing> {
         let mut tears: BTreeMap<([u32; 2], u32), NodeId> = BTreeMap::new();
-        let elements = Elements::new(&surface.faces, surface.positions.len());
+        let given = self.geometry.surface(self.scene, mesh, self.findings)?.faces.clone();
+        let elements = Elements::new(&given, surface.positions.len());
         for constraint in self.constraints() {
             if Values::new(&self.start, constraint).kind != kinds::TEARABLE {
                 continue;

@@ -42,7 +42,12 @@ impl Compiler<'_> {
         }
         let shape = self.geometry.animated(self.scene, mesh, self.findings)?;
         let surface = self.geometry.surface(self.scene, mesh, self.findings)?;
-        let triangles = surface.faces.triangles().collect();
+        let is_mirrored = self.start.placement(mesh).mirrors();
+        let faces = &surface.faces;
+        let triangles = match is_mirrored {
+            true => faces.reversed().triangles().collect(),
+            false => faces.triangles().collect(),
+        };
         let emitting = EmittingMesh { mesh, shape, triangles, rate: self.rate_map(emitter, mesh)? };
         let area = emitting.area(&self.start);
         if area.is_nan() || area <= 0.0 {
