@@ -14,13 +14,14 @@
 //! | neighbour search | [`grid`], [`neighbours`], [`near`], [`pair`] |
 //! | density, and the solver of pressure | [`density`] |
 //! | how fast an excess of density goes | [`excess`] |
-//! | ground plane, colliders, cloth and other particles beside a liquid | [`walls`], [`ball`] |
+//! | ground plane, colliders, cloth and other particles beside a liquid | `find_walls`, [`walls`], [`ball`] |
 //! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
 //! | how long its time steps are | [`time_step`] |
 
 pub mod ball;
 pub mod density;
 pub mod excess;
+mod find_walls;
 pub mod grid;
 pub mod kernel;
 pub mod near;
@@ -33,7 +34,6 @@ pub mod walls;
 
 use nalgebra::Vector3;
 
-use crate::contact::material::ContactMaterial;
 use crate::contact::system::ContactSystem;
 use crate::input::frame::{FrameInput, Liquid};
 use crate::math::Real;
@@ -46,15 +46,12 @@ use crate::state::State;
 
 use density::{Density, Load};
 use excess::{Excess, Recovery};
+use find_walls::WallSearch;
 use neighbours::{CHUNK, Neighbours, chunk_range};
 use time_step::{LiquidInterval, LiquidMotion};
 use viscosity::Viscosity;
-use walls::{Corner, Material, Plane, Walls};
+use walls::Walls;
 
-/// Least radius in rest distances of the ball of liquid that a particle of another object counts as.
-const MIN_BALL: f32 = 0.05;
-/// Radius of a ball of the volume of a cube, in sides of the cube: the third root of 3 / 4 pi.
-const RADIUS_OF_CUBE: f64 = 0.620_350_490_899_400_1;
 /// Speed of sound in m/s of a liquid with an `incompressibility` of one half.
 const SOFT_SOUND: f64 = 10.0;
 
@@ -237,123 +234,20 @@ impl LiquidSolver {
 
     /// Finds the walls near the liquid, at the end of the time step.
     fn find_walls<R: Real>(&mut self, scene: LiquidScene<'_, R>, state: &State<R>, step: &LiquidStep) {
-        let LiquidScene { model: Model { cloths, colliders }, contact, frame } = scene;
-        let Self { walls, positions, .. } = self;
-        walls.clear();
-        let own = &frame.cloths[step.cloth];
-        let per_metre = 1.0 / step.settings.spacing;
-        let place = |place: Vector3<f64>| -> [f32; 3] {
-            let place = (place - step.origin) * per_metre;
-            [place.x as f32, place.y as f32, place.z as f32]
-        };
-        let factors = &contact.material_maps.max_thickness_factor;
-        // A liquid is one element: it is excluded from what all of its particles are.
-        let excluded = contact.pair_filter.sides_of_all(cloths[step.cloth].points());
-        if let Some(ground) = frame.plane.as_ref()
-            && let Some(material) = ContactMaterial::<R>::for_ground(own, ground, factors[step.cloth])
-            && let Some(plane) = contact.ground.in_step(step.span).filter(|_| !excluded.exclude_ground())
-        {
-            let first = cloths[step.cloth].points().start;
-            let above = plane.height_now(first, state.displacement[first as usize].xyz()).to_f64();
-            let normal = plane.normal().map(|x| x.to_f64());
-            let height =
-                above - Vector3::from(normal).dot(&(Vector3::from(state.position(first)) - step.origin));
-            let normal = normal.map(|x| x as f32);
-            let offset = (material.thickness * per_metre - 0.5).max(0.0) as f32;
-            walls.plane = Some(Plane { normal, height: (height * per_metre) as f32, offset });
-        }
-        let bounds = grid::bounds(positions);
-        let region = walls.new_region(bounds);
-        for (at, model) in colliders.iter().enumerate() {
-            let factors = contact.material_maps.max_thickness_factors(step.cloth, at);
-            let theirs = &frame.colliders[at];
-            let Some(material) = ContactMaterial::<R>::for_collider(own, theirs, factors, frame.layer_range)
-            else {
-                continue;
-            };
-            let material = Material { distance: (material.thickness * per_metre) as f32 };
-            let collider = &contact.collider_states[at];
-            let places =
-                |triangle: &[u32; 3]| triangle.map(|point| place(collider.point(point, step.span.to)));
-            let triangles = model.boundary.triangles.iter();
-            let triangles =
-                triangles.filter(|corners| !excluded.exclude_collider(at, &corners[..])).map(places);
-            match (collider.moves, region) {
-                (true, _) => triangles.for_each(|triangle| walls.cover(triangle, None, material, bounds)),
-                (false, Some(region)) => {
-                    triangles.for_each(|triangle| walls.cover_still(triangle, material, region));
-                }
-                (false, None) => {}
-            }
-        }
-        if region.is_some() {
-            walls.sort_still();
-        }
-        let at_end = |row: u32| {
-            let velocity = Vector3::from(state.velocity[row as usize].xyz().map(R::to_f64));
-            Vector3::from(state.position(row)) + velocity * step.ahead
-        };
-        for (other, model) in cloths.iter().enumerate().filter(|(other, _)| *other != step.cloth) {
-            let factors = [factors[step.cloth], factors[other]];
-            let pair = [own, &frame.cloths[other]];
-            let Some(material) = ContactMaterial::<R>::for_cloths(pair, factors, frame.layer_range) else {
-                continue;
-            };
-            let mobility = material.mobility[1].to_f64();
-            let material = Material { distance: (material.thickness * per_metre) as f32 };
-            let corner = |row: u32| {
-                let inverse_mass =
-                    state.displacement[row as usize].0[3].to_f64() * mobility / step.inverse_mass;
-                Corner { row, inverse_mass: inverse_mass as f32, moved: [0.0; 3] }
-            };
-            if model.boundary.triangles.is_empty() {
-                let radius = match &frame.cloths[other].liquid {
-                    Some(liquid) => (RADIUS_OF_CUBE * liquid.spacing * per_metre) as f32,
-                    // Up to where the liquid rests on it, which begins half a rest distance before its particles.
-                    None => (material.distance - 0.5).max(MIN_BALL),
-                };
-                let rows = model.points().filter(|row| !excluded.exclude(&[*row]));
-                rows.for_each(|row| walls.particle(place(at_end(row)), corner(row), radius, bounds));
-                continue;
-            }
-            let first = walls.corners().len() as u32;
-            for row in model.points() {
-                walls.corner(corner(row));
-            }
-            for triangle in model.boundary.triangles.iter().filter(|rows| !excluded.exclude(&rows[..])) {
-                let corners = triangle.map(|row| first + row - model.points().start);
-                let triangle = triangle.map(|row| place(at_end(row)));
-                walls.cover(triangle, Some(corners), material, bounds);
-            }
-        }
-        walls.sort();
+        WallSearch::new(scene, state, step).find(&mut self.walls, grid::bounds(&self.positions));
     }
 
     /// Computes the load of the pressure solver, after viscosity and surface tension.
     fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
-        let Self { neighbours, density, viscosity, pressure, excess, velocities, loads, factors, .. } = self;
+        self.take_factors(state.population_of(step.cloth));
+        if step.settings.viscosity > 0.0 {
+            self.apply_viscosity(first, state, step, pool);
+        }
+        let Self { neighbours, density, viscosity, pressure, excess, loads, factors, .. } = self;
         let LiquidStep { settings, h, .. } = *step;
         let order = neighbours.grid.order();
-        let by_particle = state.population_of(step.cloth).map_or([&[][..]; 2], Population::liquid_factors);
-        for (factors, by_particle) in factors.iter_mut().zip(by_particle) {
-            factors.clear();
-            let known = order.iter().filter(|_| !by_particle.is_empty());
-            factors.extend(known.map(|&particle| by_particle[particle as usize]));
-        }
         let per_metre = 1.0 / settings.spacing;
-        let squared = per_metre * per_metre;
-        let is_viscous = settings.viscosity > 0.0;
-        if is_viscous {
-            velocities.clear();
-            velocities.extend(order.iter().map(|&particle| {
-                let velocity = state.velocity[(first + particle) as usize].xyz();
-                let [x, y, z] = velocity.map(|x| (x.to_f64() * per_metre) as f32);
-                [x, y, z, 0.0]
-            }));
-            let rate = (settings.viscosity * h * squared) as f32;
-            viscosity.solve(neighbours, velocities, (&factors[0], rate), pool);
-        }
-        let tension = (settings.surface_tension * squared * per_metre) as f32;
+        let tension = (settings.surface_tension * (per_metre * per_metre) * per_metre) as f32;
         let pull = surface_tension::strength(tension) * (h * h) as f32;
         let recovery = step.recovery();
         density.lambda.resize(order.len(), 0.0);
@@ -369,7 +263,7 @@ impl LiquidSolver {
                 let particle = order[at];
                 let is_free = state.displacement[(first + particle) as usize].0[3] > R::ZERO;
                 let mut moved = [0.0f32; 3];
-                if is_viscous {
+                if settings.viscosity > 0.0 {
                     moved = std::array::from_fn(|axis| viscosity.change[at][axis] * h as f32);
                 }
                 if tension > 0.0 {
@@ -379,22 +273,51 @@ impl LiquidSolver {
                 let now = neighbours.sums[at][0] - 1.0;
                 // SAFETY: the order holds each particle once.
                 #[allow(unsafe_code)]
-                let left = unsafe { excess.get(particle) };
-                // What stays of the excess from before.
-                let kept = match settings.incompressibility < 1.0 {
-                    true => 0.0,
-                    false => recovery.kept(now, left, before[particle as usize]),
-                };
-                // SAFETY: as above.
-                #[allow(unsafe_code)]
-                unsafe {
+                let kept = unsafe {
+                    let kept = match settings.incompressibility < 1.0 {
+                        true => 0.0,
+                        false => recovery.kept(now, excess.get(particle), before[particle as usize]),
+                    };
                     excess.set(particle, kept);
-                }
+                    kept
+                };
                 let inverse_mass = if is_free { 1.0 } else { 0.0 };
                 loads[k] = Load { excess: now - kept, inverse_mass, moved: moved.map(|x| x * inverse_mass) };
                 lambda[k] = pressure[particle as usize] * (h * h) as f32;
             }
         });
+    }
+
+    /// Takes up the factors by particle on viscosity and surface tension, in the sorted order.
+    fn take_factors(&mut self, population: Option<&Population>) {
+        let by_particle = population.map_or([&[][..]; 2], Population::liquid_factors);
+        for (factors, by_particle) in self.factors.iter_mut().zip(by_particle) {
+            factors.clear();
+            if !by_particle.is_empty() {
+                let order = self.neighbours.grid.order();
+                factors.extend(order.iter().map(|&particle| by_particle[particle as usize]));
+            }
+        }
+    }
+
+    /// Solves for the change of velocity by viscosity.
+    fn apply_viscosity<R: Real>(
+        &mut self,
+        first: u32,
+        state: &State<R>,
+        step: &LiquidStep,
+        pool: &ThreadPool,
+    ) {
+        let Self { neighbours, viscosity, velocities, factors, .. } = self;
+        let per_metre = 1.0 / step.settings.spacing;
+        velocities.clear();
+        velocities.extend(neighbours.grid.order().iter().map(|&particle| {
+            let velocity = state.velocity[(first + particle) as usize].xyz();
+            let [x, y, z] = velocity.map(|x| (x.to_f64() * per_metre) as f32);
+            [x, y, z, 0.0]
+        }));
+        let rate = (step.settings.viscosity * step.h * (per_metre * per_metre)) as f32;
+        viscosity.solve(neighbours, velocities, (&factors[0], rate), pool);
     }
 
     /// Solves for the pressure, and moves the particles and the cloth beside them.

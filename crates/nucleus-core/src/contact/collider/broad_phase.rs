@@ -126,82 +126,84 @@ fn interval_end<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> f64 {
 
 /// Searches contacts of a cloth with every collider, for all points with a new bound.
 fn find_candidates<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize) {
-    let of_cloth = pass.contact.lists_of(cloth);
-    let ContactPass {
-        state,
-        pool,
-        model: Model { cloths, colliders, .. },
-        contact:
-            ContactSystem {
-                collider_states,
-                collider_contacts,
-                interval_bounds,
-                candidate_intervals,
-                frame_travel,
-                bounds_violated,
-                collider_materials,
-                material_maps,
-                pair_filter,
-                ..
-            },
-        ..
-    } = pass;
-    let interval = candidate_intervals[cloth];
-    let bounds = MotionBounds { boxes: interval_bounds, first: 0, frame_travel: frame_travel[cloth] };
     let mut freed = Vec::new();
-    for list in &mut collider_contacts[of_cloth] {
-        let collider = list.collider;
-        list.interval = interval;
-        let material = collider_materials[[cloth, collider]];
-        let Some(material) = material.filter(|_| list.is_near) else {
-            list.clear();
-            if material.is_none() {
-                list.depenetration.clear();
-            }
-            continue;
-        };
-        collider_states[collider].fit_boxes(&colliders[collider], interval, pool);
-        let state_of = &collider_states[collider];
-        let view = ColliderStepArgs {
-            material,
-            material_maps,
-            at: collider,
-            h: pass.schedule.h,
-            time: TimeInterval::at(pass.span.from),
-            interval,
-        };
-        let step = &view.of(state, state_of);
-        let (cloth, collider) = (&cloths[cloth], &colliders[collider]);
-        let frame_shifts = interval
-            .ends()
-            .map(|time| Vector3::from(bounds.travel_at(time).map(R::to_f64)) - state_of.origin(time));
-        ColliderQuery {
-            cloth,
-            collider,
-            state: state_of,
-            motion_bounds: bounds,
-            bounds_violated,
-            filter: (pair_filter, list.collider),
-            step,
-            frame_shifts,
-        }
-        .run(list, pool);
-        if material.depenetrates {
-            list.depenetration.suspect_start(cloth.points(), collider, state_of, step);
-            let excluded = |point: u32, corners: [u32; 3]| {
-                pair_filter.excludes_collider(&[point], list.collider, &corners)
-            };
-            list.depenetration.update(collider, state_of, step, excluded, |point| freed.push(point));
-        } else {
-            list.depenetration.clear();
-        }
-        *pass.counters.candidate_pairs.get_mut() += list.len() as u64;
+    for list in pass.contact.lists_of(cloth) {
+        find_candidates_of_list(pass, (cloth, list), &mut freed);
     }
     *pass.counters.broad_phases.get_mut() += 1;
-    let points = cloths[cloth].points();
+    let points = pass.model.cloths[cloth].points();
+    let bounds_violated = &mut pass.contact.bounds_violated;
     bounds_violated[points.start as usize..points.end as usize].fill(false);
     // Their contacts were found while they were inside.
     freed.into_iter().for_each(|point| bounds_violated[point as usize] = true);
+}
+
+/// Searches the contacts of one list, and the points of its cloth inside its collider; collects those that are no longer
+/// inside.
+fn find_candidates_of_list<R: Real>(
+    pass: &mut ContactPass<'_, R>,
+    (cloth, list): (usize, usize),
+    freed: &mut Vec<u32>,
+) {
+    let ContactPass { state, pool, model: Model { cloths, colliders, .. }, contact, .. } = pass;
+    let ContactSystem {
+        collider_states,
+        collider_contacts,
+        interval_bounds,
+        candidate_intervals,
+        frame_travel,
+        bounds_violated,
+        collider_materials,
+        material_maps,
+        pair_filter,
+        ..
+    } = &mut **contact;
+    let list = &mut collider_contacts[list];
+    let (interval, at) = (candidate_intervals[cloth], list.collider);
+    list.interval = interval;
+    let material = collider_materials[[cloth, at]];
+    let Some(material) = material.filter(|_| list.is_near) else {
+        list.clear();
+        if material.is_none() {
+            list.depenetration.clear();
+        }
+        return;
+    };
+    collider_states[at].fit_boxes(&colliders[at], interval, pool);
+    let collider_state = &collider_states[at];
+    let args = ColliderStepArgs {
+        material,
+        material_maps,
+        at,
+        h: pass.schedule.h,
+        time: TimeInterval::at(pass.span.from),
+        interval,
+    };
+    let step = &args.of(state, collider_state);
+    let motion_bounds = MotionBounds { boxes: interval_bounds, first: 0, frame_travel: frame_travel[cloth] };
+    let (cloth, collider) = (&cloths[cloth], &colliders[at]);
+    let frame_shifts = interval.ends().map(|time| {
+        Vector3::from(motion_bounds.travel_at(time).map(R::to_f64)) - collider_state.origin(time)
+    });
+    ColliderQuery {
+        cloth,
+        collider,
+        state: collider_state,
+        motion_bounds,
+        bounds_violated,
+        filter: (pair_filter, at),
+        step,
+        frame_shifts,
+    }
+    .run(list, pool);
+    if material.depenetrates {
+        list.depenetration.suspect_start(cloth.points(), collider, collider_state, step);
+        let excluded = |point: u32, corners: [u32; 3]| pair_filter.excludes_collider(&[point], at, &corners);
+        list.depenetration.update(collider, collider_state, step, excluded, |point| freed.push(point));
+    } else {
+        list.depenetration.clear();
+    }
+    *pass.counters.candidate_pairs.get_mut() += list.len() as u64;
 }
 
 /// Predicts the window bounds of a cloth's points, and interval bounds where they are violated or do not
