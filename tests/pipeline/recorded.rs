@@ -100,9 +100,10 @@ fn particles_are_born_as_recorded_and_move_as_recorded() {
         (0..frame / 3).map(|k| Vec3::new(k as f64, 0.1 * frame as f64, 0.0)).collect()
     };
     (1..=24).for_each(|frame| write(&folder, frame, &at(frame)));
-    // The emitter is silent while the recording is played.
+    // The emitter is silent and the box stays empty while the recording is played.
     let nodes = r#""n": nucleus(usePlane: true, planeOrigin: (0, 1, 0)), "e": pointEmitter(target: "a", rate: 500),
-        "a": nParticle(cacheFile: "a.####.obj", playFromCache: true, lifespanMode: constant, lifespan: 0.1)"#;
+        "a": nParticle(cacheFile: "a.####.obj", playFromCache: true, lifespanMode: constant, lifespan: 0.1,
+            minimumCorner: (5, 5, 5), maximumCorner: (6, 6, 6), radius: 0.1)"#;
     let program = compiled(&folder, nodes).unwrap();
     let mut run = Simulation::<f64>::new(&program, 1);
     let mut ages: Vec<Particle> = Vec::new();

@@ -67,14 +67,16 @@ impl InitialState {
                     estimated_velocities(&mut cache, object, moment)?
                 }
             };
-            let rows = match cloth.radius {
-                None => [&n_base::START_POSITIONS.row, &n_base::START_VELOCITIES.row],
-                Some(_) => [&n_particle::POSITION0.row, &n_particle::VELOCITY0.row],
-            };
-            set_column(&mut scene, cloth, rows[0], &positions, scale)?;
-            set_column(&mut scene, cloth, rows[1], &velocities, scale)?;
-            if cloth.radius.is_some() {
-                empty_filling(&mut scene, cloth)?;
+            match cloth.radius {
+                None => {
+                    set_column(&mut scene, cloth, &n_base::START_POSITIONS.row, &positions, scale)?;
+                    set_column(&mut scene, cloth, &n_base::START_VELOCITIES.row, &velocities, scale)?;
+                }
+                Some(_) => {
+                    let node = node_of(&scene, cloth)?;
+                    scene.set_particles(node, in_scene_units(&positions, scale))?;
+                    set_column(&mut scene, cloth, &n_particle::VELOCITY0.row, &velocities, scale)?;
+                }
             }
             if cloth.varies && !positions.is_empty() && !has_ages(&scene, cloth) {
                 ageless.push(format!("`{}`", cloth.name));
@@ -145,16 +147,6 @@ fn estimated_velocities(cache: &mut Playback, object: usize, moment: usize) -> R
     Ok(each.collect())
 }
 
-/// The particles of a cache replace those that fill a box or a mesh: they are among them.
-fn empty_filling(scene: &mut Scene, particles: &Object) -> Result<()> {
-    let node = node_of(scene, particles)?;
-    for row in [&n_particle::MINIMUM_CORNER.row, &n_particle::MAXIMUM_CORNER.row, &n_particle::FILL_MESH.row]
-    {
-        scene.graph.unset(node, row);
-    }
-    Ok(())
-}
-
 /// Whether the scene gives the ages of the particles at the start.
 fn has_ages(scene: &Scene, particles: &Object) -> bool {
     let node = scene.graph.find(&particles.name);
@@ -174,9 +166,13 @@ fn set_column(
     scale: f64,
 ) -> Result<()> {
     let node = node_of(scene, cloth)?;
-    let column = column.iter().map(|vector| vector.map(|x| f64::from(x) * scale)).collect();
-    scene.graph.set(node, row, Setting::Fixed(Value::Vectors(column)))?;
+    scene.graph.set(node, row, Setting::Fixed(Value::Vectors(in_scene_units(column, scale))))?;
     Ok(())
+}
+
+/// The vectors of a cache in units of the scene.
+pub fn in_scene_units(column: &[[f32; 3]], scale: f64) -> Vec<[f64; 3]> {
+    column.iter().map(|vector| vector.map(|x| f64::from(x) * scale)).collect()
 }
 
 #[cfg(test)]

@@ -30,6 +30,8 @@ pub const SETTING: &str = "setting";
 pub const AUDIT: &str = "audit";
 /// Key of the seed of `--seed`.
 pub const SEED: &str = "seed";
+/// The cache and the frame whose state the run began with.
+pub const FROM: &str = "from";
 
 /// How a cache is written.
 #[derive(Debug, Clone)]
@@ -165,7 +167,7 @@ pub fn facts(
 ) -> Result<BTreeMap<String, String>> {
     let mut facts =
         BTreeMap::from([(SCALAR.to_owned(), scalar.to_string()), ("machine".to_owned(), machine())]);
-    facts.extend(from.map(|from| ("from".to_owned(), from.to_string())));
+    facts.extend(from.map(|from| (FROM.to_owned(), from.to_string())));
     if let Some(setting) = setting {
         facts.insert(SETTING.to_owned(), serde_json::to_string(&setting)?);
     }
@@ -174,9 +176,9 @@ pub fn facts(
 }
 
 /// The facts about a resumed run, whose scene may have `changed`.
-pub fn facts_of(run: &RunInfo, changed: Option<&Program>) -> BTreeMap<String, String> {
+pub fn facts_of(run: &RunInfo, changed: Option<String>) -> BTreeMap<String, String> {
     let mut facts = run.extra.clone();
-    facts.extend(changed.map(|program| (PROGRAM.to_owned(), fingerprint(program))));
+    facts.extend(changed.map(|fingerprint| (PROGRAM.to_owned(), fingerprint)));
     facts
 }
 

@@ -10,11 +10,13 @@ use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 use nucleus_graph::scene::Scene;
 use nucleus_measure::trade::Benchmark;
+use nucleus_wedge::seed;
 use serde_json::Value;
 
+use crate::initial_state::in_scene_units;
 use crate::options::Scalar;
 use crate::output::say;
-use crate::recording::{AUDIT, PROGRAM, SCALAR, SEED, SETTING, fingerprint};
+use crate::recording::{AUDIT, FROM, PROGRAM, SCALAR, SEED, SETTING, fingerprint};
 use crate::run_statistics::FrameStatistics;
 use crate::{diagnostics, figures, files};
 
@@ -47,6 +49,18 @@ pub fn is_unresumable(error: &anyhow::Error) -> bool {
     error.is::<Unresumable>()
         || error.downcast_ref().is_some_and(is_refused)
         || error.downcast_ref().is_some_and(is_broken)
+}
+
+/// The scene of a resumed run.
+pub struct ResumedScene {
+    /// The program, with the initial state of the run.
+    pub program: Program,
+    /// The path of its file.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// The fingerprint of the program before its initial state was changed.
+    pub fingerprint: String,
 }
 
 /// A run that is resumed from its cache.
@@ -99,11 +113,7 @@ impl ResumedRun {
 
     /// The program up to frame `end`, the path and the text of its scene. The scene is the text in the cache, or the file
     /// `changed`. Returns `None` if it has errors, which are reported.
-    pub fn scene(
-        &self,
-        changed: Option<&Path>,
-        end: Option<i32>,
-    ) -> Result<Option<(Program, PathBuf, String)>> {
+    pub fn scene(&self, changed: Option<&Path>, end: Option<i32>) -> Result<Option<ResumedScene>> {
         let run = self.cache.run();
         let read = match changed {
             Some(path) => files::open_scene(path, None)?,
@@ -118,20 +128,43 @@ impl ResumedRun {
         };
         let path = changed.map_or_else(|| PathBuf::from(&run.scene_path), Path::to_owned);
         let Some((mut scene, _, text)) = read.report()? else { return Ok(None) };
-        let (first, program) = (i64::from(run.start), self.program(&mut scene, changed.is_some(), end)?);
+        let (first, given) = (i64::from(run.start), self.program(&mut scene, changed.is_some(), end)?);
         ensure!(
-            program.time().start == first,
+            given.time().start == first,
             unresumable!(
                 "the scene starts at frame {}, but {} at frame {first}: run it again with `nucleus run`",
-                program.time().start,
+                given.time().start,
                 self.name()
             )
         );
-        self.check_objects(&program)?;
         if changed.is_none() {
-            self.check_inputs(&program)?;
+            self.check_inputs(&given)?;
         }
-        Ok(Some((program, path, text)))
+        let fingerprint = fingerprint(&given);
+        let program = self.begun(scene, given)?;
+        self.check_objects(&program)?;
+        Ok(Some(ResumedScene { program, path, text, fingerprint }))
+    }
+
+    /// The program with the initial state of the run: particles of another cache are those that this one begins with, and a
+    /// seed displaces the start again.
+    fn begun(&self, mut scene: Scene, given: Program) -> Result<Program> {
+        let extra = &self.cache.run().extra;
+        if extra.contains_key(FROM) {
+            let particles = given.objects().iter().filter(|object| object.radius.is_some());
+            for object in particles {
+                let recorded = self.cache.objects().iter().find(|recorded| recorded.name == object.name);
+                if let Some((node, recorded)) = scene.graph.find(&object.name).zip(recorded) {
+                    scene.set_particles(node, in_scene_units(&recorded.rest, 1.0))?;
+                }
+            }
+        } else if let Some(seed) = extra.get(SEED) {
+            let seed = seed.parse().with_context(|| format!("`seed` of {} cannot be read", self.name()))?;
+            scene = seed::displaced(scene, &given, seed);
+        } else {
+            return Ok(given);
+        }
+        diagnostics::compile_changed(&scene, "the scene does not compile with the initial state of the run")
     }
 
     /// Compiles the scene for the frame range and at the setting of the run.
@@ -259,11 +292,8 @@ impl ResumedRun {
         reason: &str,
     ) -> Result<(Simulation<R>, i32)> {
         let (name, run) = (self.name(), self.cache.run());
-        if let Some(from) = run.extra.get("from") {
+        if let Some(from) = run.extra.get(FROM) {
             bail!(unresumable!("{name}: {reason}, and its initial state is that of `{from}`: run it again"));
-        }
-        if run.extra.contains_key(SEED) {
-            bail!(unresumable!("{name}: {reason}, and its start is displaced by a seed: run it again"));
         }
         say!("{name}: {reason}: every frame is solved again from frame {}", run.start);
         Ok((Simulation::new(program, threads), run.start))

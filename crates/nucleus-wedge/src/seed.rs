@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use nucleus_graph::Simulation;
-use nucleus_graph::attributes::{Value, n_base, n_particle};
+use nucleus_graph::attributes::{Value, n_base};
 use nucleus_graph::compile::{Object, ObjectKind, Program};
 use nucleus_graph::graph::Setting;
 use nucleus_graph::scene::Scene;
@@ -53,14 +53,14 @@ pub fn displaced(mut scene: Scene, program: &Program, seed: u32) -> Scene {
         // Points that a tear may part begin in one place.
         let displaced =
             positions.iter().take(object.mesh_points).map(|point| point.map(&mut moved)).collect();
-        let row = match object.radius {
-            None => &n_base::START_POSITIONS.row,
-            Some(_) => &n_particle::POSITION0.row,
+        let Some(node) = scene.graph.find(&object.name) else { continue };
+        // Vectors fit these attributes of every cloth and particle object.
+        let _ = match object.radius {
+            Some(_) => scene.set_particles(node, displaced),
+            None => {
+                scene.graph.set(node, &n_base::START_POSITIONS.row, Setting::Fixed(Value::Vectors(displaced)))
+            }
         };
-        if let Some(node) = scene.graph.find(&object.name) {
-            // Vectors fit these attributes of every cloth and particle object.
-            let _ = scene.graph.set(node, row, Setting::Fixed(Value::Vectors(displaced)));
-        }
     }
     scene
 }
@@ -106,6 +106,23 @@ mod tests {
         let (before, after) = (places(&program), places(&seeded));
         assert_eq!((before.0.len(), before.1, after.0.len(), after.1), (16, 9, 16, 9));
         assert_ne!(before.0, after.0);
+    }
+
+    #[test]
+    fn a_seed_displaces_particles_that_fill_a_volume_and_adds_none() {
+        let box_of_eight = "minimumCorner: (-0.1, 0.5, -0.1), maximumCorner: (0.1, 0.7, 0.1)";
+        for (filling, count) in [(box_of_eight, 8), ("fillMesh: \"m\"", 1000), ("position: [(0, 0, 0)]", 1)] {
+            let text = format!(
+                r#"Scene(time: (start: 1, end: 3, fps: 24), nodes: {{
+                    "n": nucleus(), "m": polyCube(), "q": nParticle(radius: 0.05, {filling}),
+                }})"#
+            );
+            let (scene, _) = read_scene_text(&text, "a.ron".as_ref()).unwrap();
+            let program = compile(&scene).unwrap();
+            let seeded = compile(&displaced(scene, &program, 1)).unwrap();
+            let counts = [&program, &seeded].map(|program| program.objects()[0].points);
+            assert_eq!(counts, [count; 2], "{filling}");
+        }
     }
 
     #[test]

@@ -7,12 +7,11 @@ use clap::Args;
 use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo, shell_word};
 use nucleus_core::Real;
 use nucleus_graph::checks::Check;
-use nucleus_graph::compile::Program;
 
 use crate::options::Scalar;
 use crate::output::say;
 use crate::process::Outcome;
-use crate::resumed_run::{ResumedRun, Unresumable};
+use crate::resumed_run::{ResumedRun, ResumedScene, Unresumable};
 use crate::run_loop::{Finished, Recording, RunLoop};
 use crate::{files, options, output, process, recording};
 
@@ -77,10 +76,10 @@ impl Resume {
     /// Resumes the run.
     pub fn execute(self) -> Result<Resumed> {
         let old = ResumedRun::open(&self.cache)?;
-        let Some((program, scene_path, text)) = old.scene(self.scene.as_deref(), self.to)? else {
+        let Some(scene) = old.scene(self.scene.as_deref(), self.to)? else {
             return Ok(Resumed::InvalidScene);
         };
-        let (_, end) = recording::frames(&program)?;
+        let (_, end) = recording::frames(&scene.program)?;
         let compared = self.kept(&old, end)?;
         let is_complete = old.file == old.complete && old.lost().is_empty();
         if is_complete && self.at.is_none() && old.last() >= end {
@@ -92,18 +91,14 @@ impl Resume {
         }
         process::listen_for_signals()?;
         match old.scalar() {
-            Scalar::F32 => self.simulate::<f32>(old, (program, scene_path, text), compared),
-            Scalar::F64 => self.simulate::<f64>(old, (program, scene_path, text), compared),
+            Scalar::F32 => self.simulate::<f32>(old, scene, compared),
+            Scalar::F64 => self.simulate::<f64>(old, scene, compared),
         }
     }
 
     /// Continues a run with scalar `R` after frame `compared`.
-    fn simulate<R: Real>(
-        self,
-        mut old: ResumedRun,
-        (program, scene_path, text): (Program, PathBuf, String),
-        compared: i32,
-    ) -> Result<Resumed> {
+    fn simulate<R: Real>(self, mut old: ResumedRun, scene: ResumedScene, compared: i32) -> Result<Resumed> {
+        let ResumedScene { program, path, text, fingerprint } = scene;
         let (start, end) = recording::frames(&program)?;
         let needs_audit = old.is_audited() || program.checks().iter().any(Check::needs_audit);
         // Lost frames are solved again.
@@ -124,9 +119,9 @@ impl Resume {
         let info = RunInfo {
             end,
             interval,
-            scene_path: scene_path.display().to_string(),
+            scene_path: path.display().to_string(),
             scene_text: text,
-            extra: recording::facts_of(old.cache.run(), self.scene.is_some().then_some(&program)),
+            extra: recording::facts_of(old.cache.run(), self.scene.is_some().then_some(fingerprint)),
             ..old.cache.run().clone()
         };
         let out = match &self.out {

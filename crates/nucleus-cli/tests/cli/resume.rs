@@ -210,6 +210,35 @@ fn a_run_with_an_initial_state_resumes_without_the_cache_of_that_state() {
 }
 
 #[test]
+fn particles_displaced_by_a_seed_or_taken_from_a_cache_resume_with_the_same_bytes() {
+    let folder = folder();
+    let emitted =
+        r#""p": nParticle(lifespanMode: constant, lifespan: 0.3), "e": pointEmitter(target: "p", rate: 60)"#;
+    let filled = r#""q": nParticle(minimumCorner: (0, 0, 0), maximumCorner: (1, 1, 1), radius: 0.2)"#;
+    let text = format!(
+        r#"Scene(time: (start: 1, end: 20, fps: 24), nodes: {{ "n": nucleus(gravity: 0), {emitted}, {filled} }})"#
+    );
+    fs::write(folder.path().join("drops.ron"), text).unwrap();
+    let run = |more: &[&str], out: &str| {
+        let begin = ["run", "drops.ron", "--force", "-o", out];
+        let output = nucleus(folder.path(), &[&begin[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    };
+    run(&["--velocities"], "before.mcap");
+    let from = ["--from", "before.mcap@10", "--frames", "10..20"];
+    for (more, checkpointless) in [(&["--seed", "2"][..], true), (&from, false)] {
+        run(&[more, &["--checkpoint", "5"]].concat(), "x.mcap");
+        let whole = fs::read(folder.path().join("x.mcap")).unwrap();
+        assert!(resumed(folder.path(), &["--at", "17"]) == whole, "{more:?}");
+        if checkpointless {
+            run(&[more, &["--checkpoint", "0"]].concat(), "x.mcap");
+            let whole = fs::read(folder.path().join("x.mcap")).unwrap();
+            assert!(resumed(folder.path(), &["--at", "4"]) == whole, "{more:?}");
+        }
+    }
+}
+
+#[test]
 fn a_changed_scene_resumes_only_from_a_frame_that_it_reproduces() {
     let folder = folder();
     whole(folder.path());

@@ -26,7 +26,7 @@ impl ForceField {
         let side = normal.dot(&(place - point));
         let away = (place - point).try_normalize(0.0).unwrap_or(normal);
         let direction = match self.side {
-            FieldSide::AlongNormal => normal,
+            FieldSide::AlongNormal => surface.normal_at(&nearest),
             FieldSide::Single if side < 0.0 => return None,
             FieldSide::Single | FieldSide::Double => away,
         };
@@ -49,7 +49,7 @@ pub fn apply_force_fields<R: Real>(
         let at = ObjectAt::Collider(index);
         let place = |point| placed.point(point, time);
         surfaces.place(at, || collider.boundary.triangles.clone(), place, pool);
-        let Some(surface) = surfaces.get(at) else { continue };
+        let Some(surface) = surface_of(surfaces, at, &field) else { continue };
         let source = Source { field, surface, map: &collider.field_map };
         model.cloths.iter().for_each(|cloth| source.accelerate(cloth, state, length, pool));
     }
@@ -64,11 +64,25 @@ pub fn apply_force_fields<R: Real>(
         let first = cloth.points().start;
         let place = |corner: u32| Point::from(state.position(first + corner));
         surfaces.place(at, || cloth.corner_triangles(), place, pool);
-        let Some(surface) = surfaces.get(at) else { continue };
+        let Some(surface) = surface_of(surfaces, at, &field) else { continue };
         let source = Source { field, surface, map: &cloth.field_map };
         let others = (0..model.cloths.len()).filter(|&other| other != index);
         others.for_each(|other| source.accelerate(&model.cloths[other], state, length, pool));
     }
+}
+
+/// The placed surface of an object, with the normals that its field needs: smooth, so that the field does not jump where
+/// another triangle becomes the nearest.
+fn surface_of<'a>(
+    surfaces: &'a mut ObjectSurfaces,
+    at: ObjectAt,
+    field: &ForceField,
+) -> Option<&'a PlacedSurface> {
+    let surface = surfaces.get_mut(at)?;
+    if field.side == FieldSide::AlongNormal {
+        surface.set_normals();
+    }
+    Some(surface)
 }
 
 /// The field of one object at its present position.
@@ -149,5 +163,40 @@ mod tests {
         let mapped =
             field(FieldSide::Double).acceleration(&floor, &[0.2, 0.6, 9.0], Point::new(0.0, 1.0, 9.0));
         assert!((mapped.map_or(0.0, |acceleration| acceleration.y) - 2.0 * 0.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_field_along_normals_of_a_smooth_surface_is_smooth() {
+        let (lines, columns) = (12u32, 16u32);
+        // A band of a ball of 1 m, whose faces are flat.
+        let place = |corner: u32| {
+            let (line, column) = (f64::from(corner / columns), f64::from(corner % columns));
+            let (height, turn) = (0.4 + line * 0.2, column * std::f64::consts::TAU / f64::from(columns));
+            Point::new(height.sin() * turn.cos(), height.cos(), height.sin() * turn.sin())
+        };
+        let quads = (0..lines - 1).flat_map(|line| (0..columns).map(move |column| (line, column)));
+        let corners = quads.flat_map(|(line, column)| {
+            let next = (column + 1) % columns;
+            let [a, b] = [line * columns + column, line * columns + next];
+            [[a, b + columns, a + columns], [a, b, b + columns]]
+        });
+        let mut ball = PlacedSurface::new(corners.collect(), place);
+        ball.set_normals();
+        let field = ForceField {
+            side: FieldSide::AlongNormal,
+            magnitude: 1.0,
+            distance: 1.0,
+            falloff: [1.0; ForceField::SAMPLES],
+        };
+        for k in 0..200 {
+            let turn = f64::from(k) * 0.031;
+            let away = Point::new(turn.cos(), 0.0, turn.sin());
+            let acceleration = field.acceleration(&ball, &[], away * 1.2).expect("it is in reach");
+            assert!(
+                acceleration.angle(&away).to_degrees() < 3.0,
+                "{}",
+                acceleration.angle(&away).to_degrees()
+            );
+        }
     }
 }

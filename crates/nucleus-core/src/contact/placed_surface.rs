@@ -22,6 +22,8 @@ pub struct PlacedSurface {
     bvh: Bvh,
     /// The origin of the boxes.
     origin: Point,
+    /// Of corners, of any length; empty until [`set_normals`](Self::set_normals).
+    normals: Vec<Point>,
 }
 
 /// The nearest point of a surface.
@@ -66,12 +68,12 @@ impl PlacedSurface {
         let origin = centres.first().copied().unwrap_or_default();
         let mut bvh = Bvh::new(&centres);
         bvh.refit(|at| bounds(&triangles[at], origin));
-        Self { corners, triangles, bvh, origin }
+        Self { corners, triangles, bvh, origin, normals: Vec::new() }
     }
 
     /// Moves the corners; `place` gives their positions in metres.
     fn move_to(&mut self, place: impl Fn(u32) -> Point + Sync, pool: &ThreadPool) {
-        let Self { corners, triangles, bvh, origin } = self;
+        let Self { corners, triangles, bvh, origin, .. } = self;
         let shared = DisjointSlice::new(triangles);
         pool.parallel_for(corners.len().div_ceil(TRIANGLES_PER_TASK), |task| {
             let first = task * TRIANGLES_PER_TASK;
@@ -83,6 +85,33 @@ impl PlacedSurface {
         });
         *origin = triangles.first().map_or_else(Point::zeros, |[a, ..]| *a);
         bvh.refit_in_tasks(|at| bounds(&triangles[at], *origin), pool);
+    }
+
+    /// Computes the normals of the corners at their present positions: those of their triangles, weighted by angles (Thürmer
+    /// and Wüthrich 1998).
+    pub fn set_normals(&mut self) {
+        let Self { corners, triangles, normals, .. } = self;
+        let count = corners.iter().flatten().max().map_or(0, |last| *last as usize + 1);
+        normals.clear();
+        normals.resize(count, Point::zeros());
+        for (corners, places) in corners.iter().zip(triangles) {
+            let [a, b, c] = *places;
+            let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { continue };
+            for k in 0..3 {
+                let [here, next, last] = [places[k], places[(k + 1) % 3], places[(k + 2) % 3]];
+                normals[corners[k] as usize] += normal * (next - here).angle(&(last - here));
+            }
+        }
+    }
+
+    /// The normal at a nearest point, of unit length: that of the corners, if they have been [set](Self::set_normals), else that
+    /// of the triangle.
+    pub fn normal_at(&self, nearest: &Nearest) -> Point {
+        if self.normals.is_empty() {
+            return nearest.normal;
+        }
+        let normal = |corner: u32| self.normals[corner as usize].try_normalize(0.0).unwrap_or(nearest.normal);
+        nearest.mean(normal).try_normalize(0.0).unwrap_or(nearest.normal)
     }
 
     /// The nearest point within a radius in metres; of two as near, that of the first triangle.
@@ -219,6 +248,11 @@ impl ObjectSurfaces {
             ObjectAt::Cloth(at) => (&self.cloths, at),
         };
         own.get(at).and_then(Option::as_ref)
+    }
+
+    /// The same, to change it.
+    pub fn get_mut(&mut self, at: ObjectAt) -> Option<&mut PlacedSurface> {
+        self.entry(at).as_mut()
     }
 
     fn entry(&mut self, at: ObjectAt) -> &mut Option<PlacedSurface> {

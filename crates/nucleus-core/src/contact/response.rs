@@ -190,6 +190,18 @@ pub struct TouchingPoint<R> {
     pub surface: [R; 3],
     /// Coefficient of restitution, 0 to 1.
     pub coefficient: R,
+    /// Its distance in metres.
+    pub gap: R,
+    /// Whether it is nearest to an edge or a corner of the face that it touches.
+    pub is_rim: bool,
+}
+
+impl<R: Real> TouchingPoint<R> {
+    /// Whether it counts, given the distance to the `nearest` face of the collider. A point beside an edge of a flat mesh
+    /// touches no slope.
+    pub fn is_of_face(&self, nearest: R) -> bool {
+        !self.is_rim || self.gap <= nearest
+    }
 }
 
 /// The state of a point after its contacts.

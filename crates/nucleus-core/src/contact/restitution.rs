@@ -8,7 +8,7 @@ use crate::contact::response::{Impact, Restitution, TouchingPoint};
 use crate::contact::rigid_impact::{rebound, share_of_impact};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ColliderStepArgs;
-use crate::math::{Real, Row4};
+use crate::math::{Real, Row4, min};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::TimeInterval;
 use crate::state::State;
@@ -63,7 +63,8 @@ fn find_touches_of_ground<R: Real>(
         if Restitution::touches(plane.height_now(row, displacement), thickness) {
             let coefficient = material.bounce_at(&pass.contact.material_maps, point);
             let surface = plane.velocity(row, displacement, h);
-            touches.push(TouchingPoint { row, normal: plane.normal(), surface, coefficient });
+            let (normal, gap, is_rim) = (plane.normal(), R::ZERO, false);
+            touches.push(TouchingPoint { row, normal, surface, coefficient, gap, is_rim });
         }
     }
 }
@@ -87,14 +88,33 @@ fn find_touches_of_colliders<R: Real>(
         let view =
             ColliderStepArgs { material, material_maps, at, h, time: TimeInterval::at(span.to), interval };
         let step = view.of(state, &collider_states[at]);
+        let first = touches.len();
         for &active in &list.active.points.indices {
             let contact = list.point_face[active as usize];
-            if let Some((normal, surface)) = contact.touching_surface(&step, frame.duration) {
-                let coefficient = contact.bounce(&step);
-                touches.push(TouchingPoint { row: contact.points[0], normal, surface, coefficient });
+            touches.extend(contact.touch(&step, frame.duration));
+        }
+        drop_rims(touches, first);
+    }
+}
+
+/// Drops the touches of a collider, from `first` on, that are with the rim of a face while another face is nearer.
+fn drop_rims<R: Real>(touches: &mut Vec<TouchingPoint<R>>, first: usize) {
+    touches[first..].sort_by_key(|touch| touch.row);
+    let mut kept = first;
+    let mut from = first;
+    while from < touches.len() {
+        let row = touches[from].row;
+        let end = from + touches[from..].partition_point(|touch| touch.row == row);
+        let least = touches[from..end].iter().fold(touches[from].gap, |least, touch| min(least, touch.gap));
+        for at in from..end {
+            if touches[at].is_of_face(least) {
+                touches[kept] = touches[at];
+                kept += 1;
             }
         }
+        from = end;
     }
+    touches.truncate(kept);
 }
 
 /// Sets the velocity of a point after its collision, unless it is pinned.

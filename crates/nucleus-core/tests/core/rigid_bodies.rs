@@ -1,10 +1,10 @@
 //! Impacts of bodies that keep their shape.
 
-use crate::scenes::{Vec3, frame, ground, still};
+use crate::scenes::{Vec3, built, frame, ground, still};
 use crate::soft_bodies::{crate_of, icosphere};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, FrameInput, Mass, ModelBuilder, ResistanceModel, Solver,
-    StateView, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, FrameInput, Mass, ModelBuilder, ResistanceModel,
+    Solver, StateView, Surface,
 };
 
 const CLOTH: ClothId = ClothId(0);
@@ -72,4 +72,44 @@ fn a_rigid_crate_gains_no_energy_on_whatever_corner_it_lands() {
     // Flat, all of its bottom lands at once.
     let [height, _] = rebound(&crate_of(0.2, 4), 20.0, 1.0);
     assert!((height - 0.8).abs() < 0.05, "{height} m");
+}
+
+/// The mean position of a crate of 20 cm, and the height of its lowest point, after 24 frames in which it slides at 2 m/s on a
+/// flat mesh of so many quads.
+fn slid(quads: [u32; 2], friction: f64) -> [f64; 2] {
+    let mut body = crate_of(0.2, 3);
+    body.positions.iter_mut().for_each(|place| place.y += 0.11);
+    let count = body.positions.len();
+    let lists = ClothLists { stretch: true, damp: true, shape: true, ..ClothLists::NONE };
+    let mut cloth = Cloth::new(body, Mass::PerPoint(0.01), lists);
+    cloth.start.velocities = vec![Vec3::x() * 2.0; count];
+    let floor = Surface::sheet(Vec3::new(-1.0, 0.0, -1.0), [Vec3::x() * 4.0, Vec3::z() * 2.0], quads);
+    let mut solver: Solver<f64> = Solver::new(built(cloth, [floor]), 1);
+    let cloth = ClothFrame { rigidity: 10.0, thickness: 0.005, friction: friction / 2.0, ..still() };
+    let collider = ColliderFrame {
+        collide: true,
+        thickness: 0.005,
+        friction: friction / 2.0,
+        ..ColliderFrame::default()
+    };
+    let input = FrameInput { cloths: vec![cloth], colliders: vec![collider], ..frame(1, PHYSICAL) };
+    for _ in 0..24 {
+        solver.step(&input, &mut ());
+    }
+    let points = || (0..count).map(|k| solver.point(CLOTH, k));
+    let way = points().map(|place| place.x).sum::<f64>() / count as f64;
+    [way, points().map(|place| place.y).fold(f64::MAX, f64::min)]
+}
+
+#[test]
+fn a_rigid_crate_slides_over_the_edges_of_a_flat_mesh_without_tripping() {
+    for quads in [[1, 1], [20, 10], [160, 80]] {
+        let [way, height] = slid(quads, 0.0);
+        assert!((way - 2.0).abs() < 0.02, "{quads:?}: it slid by {way} m");
+        assert!((height - 0.01).abs() < 1e-3, "{quads:?}: it is at {height} m");
+        // Friction stops it after v² / 2 µ g.
+        let [way, height] = slid(quads, 0.5);
+        assert!((way - 0.408).abs() < 0.03, "{quads:?}: it slid by {way} m");
+        assert!((height - 0.01).abs() < 1e-3, "{quads:?}: it is at {height} m");
+    }
 }

@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use crate::attributes::{
-    Key, NodeType, air_field, dynamic_constraint, field, gravity_field, n_particle, n_rigid, particle,
-    point_emitter, uniform_field, vortex_field,
+    Key, NodeType, air_field, dynamic_constraint, field, gravity_field, n_base, n_particle, n_rigid, nucleus,
+    particle, point_emitter, uniform_field, vortex_field,
 };
 use crate::diagnostic::Findings;
 use crate::graph::{Graph, NodeId, Plug};
 use crate::scene::document::Scene;
 
-/// Warns of fields, emitters and constraints that act on nothing.
+/// Warns of fields, emitters and constraints that act on nothing, and of objects that no nucleus solves.
 pub(super) fn warn_of_idle_nodes(scene: &Scene, broken: &BTreeSet<NodeId>, findings: &mut Findings) {
     let graph = &scene.graph;
     let mut warn = |id: NodeId, message: String, help: &str| {
@@ -38,6 +38,18 @@ pub(super) fn warn_of_idle_nodes(scene: &Scene, broken: &BTreeSet<NodeId>, findi
         {
             let help = "`speed` is the rate at which objects take up its velocity: give it one, `speed: 1`";
             warn(id, format!("`{name}` acts on nothing: its `speed` is zero"), help);
+        }
+    }
+    for (id, node) in graph.of_type(&n_base::N_BASE) {
+        let mut solvers = graph.targets(id, &n_base::CURRENT_STATE);
+        if !solvers.any(|to| graph.node(to.node).node_type().is_a(&nucleus::NUCLEUS)) {
+            let help = match node.node_type().is_a(&n_particle::N_PARTICLE) {
+                true => "take its connections out: then the nucleus of the scene solves it",
+                false => {
+                    "name its mesh as `inputMesh: \"...\"` instead of connecting it: then a nucleus solves it"
+                }
+            };
+            warn(id, format!("`{}` is not solved: it is connected to no nucleus", node.name()), help);
         }
     }
     for (id, node) in graph.of_type(&point_emitter::POINT_EMITTER) {

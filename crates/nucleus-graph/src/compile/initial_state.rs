@@ -57,10 +57,7 @@ impl Compiler<'_> {
     fn world_surface(&mut self, object: NodeId) -> Option<(NodeId, Surface)> {
         let graph = &self.scene.graph;
         let Some(mesh) = self.mesh_of(object) else {
-            let name = graph.node(object).name();
-            let error =
-                self.findings.error(&self.scene.source.place(name), format!("`{name}` has no `inputMesh`"));
-            error.help("connect a mesh's `worldMesh[0]` to it");
+            self.report_no_mesh(object);
             return None;
         };
         if self.broken.contains(&mesh) {
@@ -84,6 +81,25 @@ impl Compiler<'_> {
             surface.faces = surface.faces.reversed();
         }
         Some((mesh, surface))
+    }
+
+    /// Reports an object without a mesh, or with one that is simulated.
+    fn report_no_mesh(&mut self, object: NodeId) {
+        let graph = &self.scene.graph;
+        let name = graph.node(object).name();
+        let place = self.scene.source.place(name);
+        match graph.source(object, &n_base::INPUT_MESH).map(|source| graph.node(source).name()) {
+            None => {
+                let error = self.findings.error(&place, format!("`{name}` has no `inputMesh`"));
+                error.help("connect a mesh's `worldMesh[0]` to it");
+            }
+            Some(source) => {
+                let message =
+                    format!("`{name}` cannot follow `{source}`: the result of cloth is no input mesh yet");
+                let error = self.findings.error(&place, message);
+                error.help("run and export the cloth first, and read it as a `mesh` with a file per frame");
+            }
+        }
     }
 
     /// The mesh node connected to an object. A mesh that only displays another node's output, as that of a cloth,
@@ -113,7 +129,11 @@ impl Compiler<'_> {
                 return None;
             }
         };
-        let filled = self.filled_positions(node, vectors.len())?;
+        // Recorded particles are all of them.
+        let filled = match is_recorded {
+            true => Vec::new(),
+            false => self.filled_positions(node, vectors.len())?,
+        };
         let graph = &self.scene.graph;
         let is_filled = is_recorded || !emitter_nodes(graph, node).is_empty() || is_event_target(graph, node);
         if vectors.is_empty() && filled.is_empty() && !is_filled {

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use crate::attributes::{Value, n_particle};
 use crate::checks::Check;
-use crate::graph::Graph;
+use crate::graph::{Graph, GraphError, NodeId, Setting};
 use crate::memory::{Budget, Memory};
 
 /// A scene: frames, recording, nodes and checks.
@@ -93,6 +94,19 @@ impl Scene {
                 .then(|| "`record` takes every n-th frame: n is at least 1".to_owned()),
         ];
         faults.into_iter().flatten().collect()
+    }
+
+    /// Sets the positions of the particles of a node at the start, in place of all that the scene gives or fills a volume with.
+    ///
+    /// # Errors
+    /// When the node has no particles.
+    pub fn set_particles(&mut self, node: NodeId, positions: Vec<[f64; 3]>) -> Result<(), GraphError> {
+        use n_particle::{FILL_MESH, MAXIMUM_CORNER, MINIMUM_CORNER, POSITION0};
+        self.graph.set(node, &POSITION0.row, Setting::Fixed(Value::Vectors(positions)))?;
+        for filling in [&MINIMUM_CORNER.row, &MAXIMUM_CORNER.row, &FILL_MESH.row] {
+            self.graph.unset(node, filling);
+        }
+        Ok(())
     }
 }
 

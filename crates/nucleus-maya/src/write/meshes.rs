@@ -29,7 +29,8 @@ impl Writer<'_> {
 
     /// The mesh of a file at the first frame, and whether the file moves it.
     fn file_mesh(&self, id: NodeId) -> Result<Option<(Surface, bool)>, String> {
-        if self.graph().node(id).get(&mesh::FILE).is_empty() {
+        let node = self.graph().node(id);
+        if !node.node_type().is_a(&mesh::MESH) || node.get(&mesh::FILE).is_empty() {
             return Ok(None);
         }
         let refused = |found: Vec<Diagnostic>| found.first().map_or(String::new(), |one| one.message.clone());

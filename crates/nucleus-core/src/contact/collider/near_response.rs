@@ -6,7 +6,7 @@ use crate::contact::collider::near_points::{NearPoint, NearPoints};
 use crate::contact::collider::sweep::resolve_contacts;
 use crate::contact::response::{Impact, Restitution};
 use crate::contact::time_step::ColliderStep;
-use crate::math::{Real, Row4};
+use crate::math::{Real, Row4, min};
 use crate::parallel::disjoint::DisjointSlice;
 
 impl<R: Real> NearPoints<R> {
@@ -116,25 +116,26 @@ impl<R: Real> NearPoints<R> {
         velocity: DisjointSlice<'_, Row4<R>>,
         frame: f64,
     ) {
-        let contacts = self.places(at, None).flat_map(|place| self.contacts_of(place));
-        for contact in contacts {
-            let coefficient = contact.bounce(step);
-            let Some((normal, surface)) = contact.touching_surface(step, frame) else { continue };
-            let ([point], row) = (contact.points, step.row(contact.points[0]));
-            if coefficient <= R::ZERO || row.0[3] <= R::ZERO {
-                continue;
-            }
-            // SAFETY: the point belongs to this task.
-            #[allow(unsafe_code)]
-            unsafe {
-                let impact = Impact {
-                    predicted: step.writer.predicted(point),
-                    displacement: row.xyz(),
-                    velocity: velocity.get(point).xyz(),
-                };
-                let [x, y, z] =
-                    Restitution { coefficient, ..restitution }.velocity_after(&impact, normal, surface);
-                velocity.set(point, Row4([x, y, z, R::ZERO]));
+        for place in self.places(at, None) {
+            let touches = || self.contacts_of(place).iter().filter_map(|contact| contact.touch(step, frame));
+            let Some(nearest) = touches().map(|touch| touch.gap).reduce(min) else { continue };
+            for touch in touches().filter(|touch| touch.is_of_face(nearest)) {
+                let row = step.row(touch.row);
+                if touch.coefficient <= R::ZERO || row.0[3] <= R::ZERO {
+                    continue;
+                }
+                let restitution = Restitution { coefficient: touch.coefficient, ..restitution };
+                // SAFETY: the point belongs to this task.
+                #[allow(unsafe_code)]
+                unsafe {
+                    let impact = Impact {
+                        predicted: step.writer.predicted(touch.row),
+                        displacement: row.xyz(),
+                        velocity: velocity.get(touch.row).xyz(),
+                    };
+                    let [x, y, z] = restitution.velocity_after(&impact, touch.normal, touch.surface);
+                    velocity.set(touch.row, Row4([x, y, z, R::ZERO]));
+                }
             }
         }
     }

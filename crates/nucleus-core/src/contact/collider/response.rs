@@ -1,11 +1,16 @@
 //! Response of one contact with a collider: push, friction, adhesion, and the surface for restitution.
 
+use nalgebra::Vector3;
+
 use crate::contact::collider::contact::{
     ColliderContact, Outcome, Point, closest, cross_direction, interpolate,
 };
 use crate::contact::collider::separation::{best_plane, separated};
+use crate::contact::depenetration::unit_normal;
 use crate::contact::material::{ContactMaterial, ContactPoints};
-use crate::contact::response::{Adhesion, Mobility, Push, Restitution, TOUCH_TOLERANCE, coulomb_correction};
+use crate::contact::response::{
+    Adhesion, Mobility, Push, Restitution, TOUCH_TOLERANCE, TouchingPoint, coulomb_correction,
+};
 use crate::contact::time_step::ColliderStep;
 use crate::math::{Real, add, dot, scale};
 
@@ -235,12 +240,28 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     pub fn bounce(&self, step: &ColliderStep<'_, R>) -> R {
         self.material(step, &mut None).bounce_at(step.material_maps, self.contact_points(&(self.weights, [])))
     }
+}
 
-    /// The normal, and the collider's velocity at the contact in m/s, if the two touch at the end of the step.
-    pub fn touching_surface(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<([R; 3], [R; 3])> {
+/// Least cosine of the angle between the normal of a contact and that of its face: below it, the contact is with the rim.
+const FACE_NORMAL: f64 = 1.0 - 1e-6;
+
+impl<R: Real> ColliderContact<R, 1, 3> {
+    /// What the point touches at the end of the step, if the two touch; `frame` is the length of the frame in seconds.
+    pub fn touch(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<TouchingPoint<R>> {
         let moved = step.displacements(self.points);
         let (gap, _) = self.gaps(moved, step.shares[1]);
-        let velocity = self.surface_motion.map(|x| x / R::from_f64(frame));
-        Restitution::touches(gap, self.rest_gap(step, self.weights)).then_some((self.normal, velocity))
+        if !Restitution::touches(gap, self.rest_gap(step, self.weights)) {
+            return None;
+        }
+        let [_, corners] = step.collider_positions(self.collider_points);
+        let along = unit_normal(corners).dot(&Vector3::from(self.normal.map(R::to_f64)));
+        Some(TouchingPoint {
+            row: self.points[0],
+            normal: self.normal,
+            surface: self.surface_motion.map(|x| x / R::from_f64(frame)),
+            coefficient: self.bounce(step),
+            gap,
+            is_rim: along.abs() < FACE_NORMAL,
+        })
     }
 }

@@ -124,3 +124,34 @@ fn attributes_that_are_read_once_cannot_be_keyed() {
     }
     at_start(&sheet("", "pressureMethod: volumeTrackingModel, startPressure: keys([(1, 0), (12, 1)])"));
 }
+
+#[test]
+fn an_object_that_is_connected_to_no_nucleus_is_a_warning() {
+    let text = r#"Scene(time: (start: 1, end: 2, fps: 24), nodes: {
+        "n": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p"), "r": nRigid(nucleus: "n"),
+    }, connections: [("p.worldMesh[0]", "r.inputMesh")])"#;
+    let (scene, _) = read_scene_text(text, Path::new("test.ron")).expect("it can be read");
+    let warnings = compile(&scene).expect("it compiles").warnings().to_vec();
+    let messages: Vec<&str> = warnings.iter().map(|warning| warning.message.as_str()).collect();
+    assert_eq!(messages, ["`r` is not solved: it is connected to no nucleus"]);
+}
+
+#[test]
+fn an_object_that_follows_simulated_cloth_is_an_error_with_a_way_out() {
+    let refused = |mesh: &str| {
+        let text = format!(
+            r#"Scene(time: (start: 1, end: 2, fps: 24), nodes: {{
+                "n": nucleus(), "n2": nucleus(), "p": polyPlane(), "r": nRigid(),
+                "c": nCloth(inputMesh: "p", nucleus: "n"),
+            }}, connections: [
+                ("{mesh}", "r.inputMesh"), ("r.currentState", "n2.inputPassive[0]"), ("r.startState", "n2.inputPassiveStart[0]"),
+            ])"#
+        );
+        let (scene, _) = read_scene_text(&text, Path::new("test.ron")).expect("it can be read");
+        compile(&scene).expect_err("it is refused")[0].message.clone()
+    };
+    let message =
+        |source: &str| format!("`r` cannot follow `{source}`: the result of cloth is no input mesh yet");
+    assert_eq!(refused("c.outputMesh"), message("c"));
+    assert_eq!(refused("outputCloth1.worldMesh[0]"), message("outputCloth1"));
+}
