@@ -45,6 +45,11 @@ impl Ramp {
     pub fn is_at_least(&self, limit: f64) -> bool {
         self.points.iter().all(|point| point.value >= limit)
     }
+
+    /// Whether it has the same value at all positions.
+    pub fn is_constant(&self) -> bool {
+        self.points.windows(2).all(|pair| pair[0].value == pair[1].value)
+    }
 }
 
 #[cfg(test)]

@@ -9,6 +9,9 @@ use super::dependencies::{DEPENDENCIES, Dependency, Need};
 use super::particle_ramps::is_event_target;
 use super::units::CLASSIC;
 
+/// Evaluations that are searched for jumps of time.
+const MAX_EVALUATIONS: u32 = 100_000;
+
 impl Compiler<'_> {
     /// Warns of settings of an object that another setting of it switches off.
     pub(super) fn warn_of_contradictions(&mut self, object: NodeId) {
@@ -77,6 +80,37 @@ impl Compiler<'_> {
                 self.findings.warning(&place, message).help(&help);
             }
         }
+    }
+
+    /// Warns of a time that keys or a connection advance by more than `frameJumpLimit`: the nucleus skips such intervals.
+    pub(super) fn warn_of_frame_jumps(&mut self) {
+        let (scene, id) = (self.scene, self.program.node);
+        let graph = &scene.graph;
+        if graph.source(id, &nucleus::CURRENT_TIME) == Some(graph.clock()) {
+            return;
+        }
+        let time_at = |frame: f64| graph.at(frame).get(id, &nucleus::CURRENT_TIME);
+        let first = self.start.frame();
+        let ends = (1..=MAX_EVALUATIONS).map(|k| first + scene.every * f64::from(k));
+        let ends: Vec<f64> = ends.take_while(|end| *end <= scene.time.end as f64).collect();
+        let jump_at = |&end: &f64| {
+            let limit = graph.at(end).get(id, &nucleus::FRAME_JUMP_LIMIT) as f64;
+            let jump = time_at(end) - time_at(end - scene.every);
+            (jump > limit.max(scene.every) * (1.0 + 1e-9)).then_some((end, jump, limit))
+        };
+        let skipped: Vec<(f64, f64, f64)> = ends.iter().filter_map(jump_at).collect();
+        let Some((end, jump, limit)) = skipped.first() else { return };
+        let name = graph.node(id).name();
+        let message = format!(
+            "`{name}` stands still in {} of {} evaluations: its `currentTime` advances by {:.3} to frame {end}, \
+            and `frameJumpLimit` is {limit}",
+            skipped.len(),
+            ends.len(),
+            jump
+        );
+        let place = scene.source.place(&format!("{name}.{}", nucleus::CURRENT_TIME.row.name));
+        let help = format!("write `frameJumpLimit: {}`, or key a slower time", jump.ceil());
+        self.findings.warning(&place, message).help(&help);
     }
 
     /// Warns of a bounce above 1, which counts as 1.

@@ -51,6 +51,7 @@ impl Compiler<'_> {
             units::check_time_input(self.scene, self.program.node, self.findings);
             self.warn_of_bounce(self.program.node, &nucleus::PLANE_BOUNCE);
             self.warn_of_zero_directions();
+            self.warn_of_frame_jumps();
             let emitters = self.program.emitters.iter().map(|emitter| emitter.node);
             let fields = self.program.fields.iter().map(|field| field.node);
             let nodes: Vec<NodeId> =

@@ -18,7 +18,6 @@ const ALL_TO_FIRST: i32 = 0;
 const ALL_TO_ALL: i32 = 1;
 /// `connectionMethod`.
 const IN_ORDER: i32 = 0;
-const MAX_DISTANCE: i32 = 1;
 
 /// What forming links needs of a constraint.
 pub(super) struct Forming<'a> {
@@ -125,7 +124,7 @@ impl Forming<'_> {
                 let count = from.elements.len().min(to.elements.len()) as u32;
                 (0..count).map(|k| [k, k]).collect()
             }
-            MAX_DISTANCE => self.within_distance(from, to, a == b),
+            kinds::WITHIN_MAX_DISTANCE => self.within_distance(from, to, a == b),
             _ => self.nearest_pairs(from, to, a == b),
         };
         self.thinned(pairs, [from, to])
@@ -297,7 +296,7 @@ impl Forming<'_> {
         let walks = self.values.slides() && !surface.sheet.is_empty();
         let sheet = walks.then(|| Sheet::new(surface, self.places));
         let reach = match self.values.choice(&con::CONNECTION_METHOD) {
-            MAX_DISTANCE => self.reach(),
+            kinds::WITHIN_MAX_DISTANCE => self.reach(),
             _ => f64::INFINITY,
         };
         let mut links = Vec::new();

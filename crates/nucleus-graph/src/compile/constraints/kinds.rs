@@ -28,6 +28,8 @@ pub(super) fn excludes(kind: i32) -> bool {
 pub(super) const TO_SPACE: i32 = 0;
 /// `constraintMethod: weld`.
 pub(super) const WELD: i32 = 0;
+/// `connectionMethod: within max distance`.
+pub(super) const WITHIN_MAX_DISTANCE: i32 = 1;
 /// `connectionUpdate: per frame`.
 const PER_FRAME: i32 = 1;
 
@@ -79,16 +81,18 @@ pub fn defaults_by_type(node_type: &'static NodeType, attribute: &Attribute) -> 
         return Vec::new();
     }
     let types = con::CONSTRAINT_TYPE.row.words();
-    let of_type = |&(kind, name, value): &(i32, &str, f64)| {
-        let (_, word) = types.iter().find(|(index, _)| index.0 == kind).filter(|_| name == attribute.name)?;
-        let value = match attribute.kind {
-            Kind::Choice(_) => Value::Choice(Choice(value as i32)),
-            Kind::Bool => Value::Bool(value != 0.0),
-            _ => Value::Float(value),
-        };
-        Some((word.clone(), value))
-    };
-    WRITTEN.iter().filter_map(of_type).collect()
+    let of_type = |(kind, word): &(Choice, String)| Some((word.clone(), written_value(kind.0, attribute)?));
+    types.iter().filter_map(of_type).collect()
+}
+
+/// The value of an attribute that a kind writes; `None` where it has the default of the node.
+pub(super) fn written_value(kind: i32, attribute: &Attribute) -> Option<Value> {
+    let (_, _, value) = WRITTEN.iter().find(|(of, name, _)| *of == kind && *name == attribute.name)?;
+    Some(match attribute.kind {
+        Kind::Choice(_) => Value::Choice(Choice(*value as i32)),
+        Kind::Bool => Value::Bool(*value != 0.0),
+        _ => Value::Float(*value),
+    })
 }
 
 /// Attributes that turn the pins of a transform constraint into springs, or add a force to them.
@@ -166,15 +170,20 @@ impl<'a> Values<'a> {
 
     /// The ramp over the distance, with the distance in metres; `None` where it is 1 everywhere.
     pub(super) fn dropoff(&self, metres: impl Fn(f64) -> f64) -> Option<Falloff> {
-        let given = self.at.graph().is_given(self.node, &con::STRENGTH_DROPOFF);
-        let ramp: Cow<'static, [RampPoint]> = match self.kind {
-            FORCE if !given => Cow::Borrowed(FALLING),
-            _ => self.at.get(self.node, &con::STRENGTH_DROPOFF),
-        };
+        let ramp = self.strength_dropoff();
         let distance = self.number(&con::DROPOFF) * self.number(&con::DROPOFF_DISTANCE);
         let samples: [f64; Falloff::SAMPLES] = Ramp::new(&ramp).samples();
         let is_one = samples.iter().all(|sample| *sample == 1.0);
         (!is_one).then(|| Falloff { distance: metres(distance), samples })
+    }
+
+    /// The ramp over the distance; that of a force field falls.
+    pub(super) fn strength_dropoff(&self) -> Cow<'static, [RampPoint]> {
+        let given = self.at.graph().is_given(self.node, &con::STRENGTH_DROPOFF);
+        match self.kind {
+            FORCE if !given => Cow::Borrowed(FALLING),
+            _ => self.at.get(self.node, &con::STRENGTH_DROPOFF),
+        }
     }
 
     /// Whether the constraint pins points to its transform.

@@ -48,6 +48,7 @@ impl Compiler<'_> {
             }
             if self.check_members(node, &members) {
                 self.warn_of_unused_attributes(node, &members);
+                self.warn_of_disabled_objects(node, &members);
                 sources.extend(self.sources_of(node, members));
             }
         }
@@ -75,20 +76,11 @@ impl Compiler<'_> {
     fn sources_of(&self, node: NodeId, members: Vec<Member>) -> Vec<ConstraintSource> {
         let values = Values::new(&self.start, node);
         let to_space = values.choice(&con::CONSTRAINT_RELATION) == 0;
-        let used = |key| values.ever(key, |value| value > 0.0);
-        let drags = used(&con::DAMP) || used(&con::MOTION_DRAG);
         let forces = values.ever(&con::FORCE, |force| force != 0.0);
-        let bends = values.toggle(&con::BEND) && used(&con::BEND_STRENGTH);
-        let pulls = bends
-            || used(&con::STRENGTH)
-            || used(&con::TANGENT_STRENGTH)
-            || values.choice(&con::CONSTRAINT_METHOD) == 0 && !kinds::excludes(values.kind);
         let excludes = values.toggle(&con::EXCLUDE_COLLISIONS);
-        let breaks = |glue: &f64| *glue < 1.0;
-        let can_break = values.ever(&con::GLUE_STRENGTH, |glue| glue < 1.0)
-            || members.iter().any(|member| breaks(&member.scalars[2]) || member.maps[1].iter().any(breaks));
+        let can_break = can_break(&values, &members);
         let mut parts = Vec::new();
-        if pulls || drags || forces && !to_space {
+        if has_links(&values) || forces && !to_space {
             parts.push(Some(Part::Links));
         }
         if forces && to_space {
@@ -416,6 +408,22 @@ fn with_twins(mut spans: Vec<[u32; 2]>, points: usize, twins: &[u32]) -> Vec<[u3
         spans.extend(own);
     }
     spans
+}
+
+/// Whether a constraint ever pulls, damps or drags along links.
+pub(super) fn has_links(values: &Values<'_>) -> bool {
+    let used = |key| values.ever(key, |value| value > 0.0);
+    let drags = used(&con::DAMP) || used(&con::MOTION_DRAG);
+    let bends = values.toggle(&con::BEND) && used(&con::BEND_STRENGTH);
+    let welds = values.choice(&con::CONSTRAINT_METHOD) == kinds::WELD && !kinds::excludes(values.kind);
+    drags || bends || welds || used(&con::STRENGTH) || used(&con::TANGENT_STRENGTH)
+}
+
+/// Whether links of a constraint ever break.
+pub(super) fn can_break(values: &Values<'_>, members: &[Member]) -> bool {
+    let breaks = |glue: &f64| *glue < 1.0;
+    values.ever(&con::GLUE_STRENGTH, |glue| glue < 1.0)
+        || members.iter().any(|member| breaks(&member.scalars[2]) || member.maps[1].iter().any(breaks))
 }
 
 /// Why a constraint cannot join its members, and what helps.

@@ -62,6 +62,49 @@ fn an_attribute_that_a_constraint_of_its_kind_does_not_use_is_a_warning() {
             vec![("restLength", "`restLengthMethod` is fromStartDistance")],
         ),
         (
+            format!("type: pointToPoint, {both}, tangentStrength: 5"),
+            vec![("tangentStrength", "no link joins a point with a surface")],
+        ),
+        (
+            format!("type: pointToPoint, {both}, maxDistance: 0.5"),
+            vec![("maxDistance", "`connectionMethod` joins pairs at any distance")],
+        ),
+        (
+            format!("type: pointToSurface, {both}, maxDistance: 0.5"),
+            vec![("maxDistance", "`connectionMethod` joins pairs at any distance")],
+        ),
+        (
+            format!("type: pointToPoint, {both}, dropoffDistance: 5, dropoff: 0.5"),
+            vec![
+                ("dropoff", "`strengthDropoff` is the same at all distances"),
+                ("dropoffDistance", "`strengthDropoff` is the same at all distances"),
+            ],
+        ),
+        (
+            r#"type: force, components: ["cloth1"], strengthDropoff: [(0, 0.5), (1, 0.5)], dropoffDistance: 2"#
+                .to_owned(),
+            vec![("dropoffDistance", "`strengthDropoff` is the same at all distances")],
+        ),
+        (
+            format!("type: pointToPoint, {both}, glueStrengthScale: 2"),
+            vec![("glueStrengthScale", "`glueStrength` is 1, which never breaks")],
+        ),
+        (
+            r#"type: weldBorders, components: ["cloth1"], strength: 5"#.to_owned(),
+            vec![("strength", "a weld is rigid")],
+        ),
+        (
+            format!("type: pointToSurface, {both}, constraintMethod: weld, tangentStrength: 5"),
+            vec![("tangentStrength", "a weld is rigid")],
+        ),
+        (
+            r#"type: force, components: ["cloth1"], scale: (2, 2, 2), rotate: (0, 90, 0)"#.to_owned(),
+            vec![
+                ("rotate", "its force is towards a point, the same from all sides"),
+                ("scale", "its force is towards a point, the same from all sides"),
+            ],
+        ),
+        (
             format!("type: pointToPoint, {both}, restLengthMethod: constant, restLengthScale: 0.5"),
             vec![("restLengthScale", "`restLengthMethod` is constant")],
         ),
@@ -87,8 +130,58 @@ fn attributes_that_a_constraint_uses_or_that_have_their_default_are_no_warnings(
         format!("type: slideOnSurface, {both}, constraintMethod: weld, tangentStrength: 0, friction: 1"),
         format!("type: pointToPoint, {both}, connectionDensity: 0.5, restLengthScale: 0.5"),
         r#"type: tearableSurface, components: ["cloth1"], bendStrength: 5, bendBreakAngle: 30"#.to_owned(),
+        format!("type: pointToPoint, {both}, connectionMethod: withinMaxDistance, maxDistance: 2"),
+        format!(
+            "type: pointToPoint, {both}, maxDistance: 2, connectionDensityRange: [(0, 1), (1, 0)], \
+            tangentStrength: 0"
+        ),
+        format!("type: pointToPoint, {both}, strengthDropoff: [(0, 1), (1, 0)], dropoffDistance: 5"),
+        format!("type: pointToPoint, {both}, glueStrength: 0.5, glueStrengthScale: 2"),
+        r#"type: weldBorders, components: ["cloth1"], maxDistance: 0.2"#.to_owned(),
+        r#"type: tearableSurface, components: ["cloth1"], maxDistance: 0.01, glueStrengthScale: 2"#
+            .to_owned(),
+        r#"type: force, components: ["cloth1"], dropoffDistance: 2, translate: (0, 1, 0)"#.to_owned(),
+        r#"type: force, components: ["cloth1"], strength: 1, scale: (2, 2, 2)"#.to_owned(),
+        // Alone it turns pins into springs.
+        r#"components: ["cloth1"], dropoffDistance: 5"#.to_owned(),
     ] {
         assert_eq!(of_constraint(&attributes), Vec::<String>::new(), "{attributes}");
+    }
+}
+
+#[test]
+fn strength_of_a_weld_counts_passes_in_the_classic_model() {
+    let welded = r#""k": dynamicConstraint(type: weldBorders, components: ["cloth1"], strength: 5)"#;
+    assert_eq!(warnings(&(sheet("resistanceModel: classic", "") + welded)), Vec::<String>::new());
+}
+
+#[test]
+fn a_whole_object_that_a_constraint_lets_collide_with_nothing_is_a_warning() {
+    let told = |name: &str| format!("`k` lets all of `{name}` collide with nothing");
+    for (attributes, expected) in [
+        (r#"components: ["cloth1", "cloth2.vtx[0:1]"]"#, vec![told("cloth1")]),
+        (r#"components: ["cloth1.vtx[0:3]", "cloth2"]"#, vec![told("cloth1"), told("cloth2")]),
+        (r#"components: ["cloth1.vtx[0:1]", "cloth2.vtx[0:1]"]"#, vec![]),
+        (r#"components: ["cloth1"], enable: keys([(1, true), (9, false)])"#, vec![]),
+    ] {
+        assert_eq!(of_constraint(&format!("type: disableCollision, {attributes}")), expected, "{attributes}");
+    }
+    let pairs = r#"type: collisionExclusion, components: ["cloth1", "cloth2"]"#;
+    assert_eq!(of_constraint(pairs), Vec::<String>::new());
+}
+
+#[test]
+fn a_time_that_advances_by_more_than_the_frame_jump_limit_is_a_warning() {
+    let fast = "currentTime: keys([(1, 1), (11, 21), (24, 34)])";
+    let expected = "`nucleus1` stands still in 10 of 23 evaluations: its `currentTime` advances by 2.000 to frame \
+        2, and `frameJumpLimit` is 1";
+    assert_eq!(warnings(&sheet(fast, "")), [expected]);
+    for fine in [
+        "currentTime: keys([(1, 1), (24, 12)])".to_owned(),
+        "currentTime: keys([(1, 24), (24, 1)])".to_owned(),
+        format!("{fast}, frameJumpLimit: 2"),
+    ] {
+        assert_eq!(warnings(&sheet(&fine, "")), Vec::<String>::new(), "{fine}");
     }
 }
 
