@@ -122,7 +122,7 @@ impl Kind {
             Self::Texts => "text in quotes or a list of texts",
             Self::Ints => "a list of whole numbers",
             Self::Floats => "a list of numbers, file(\"...\") or expression(\"...\")",
-            Self::Vectors => "a list of vectors or file(\"...\")",
+            Self::Vectors => "a vector, a list of vectors or file(\"...\")",
             Self::Ramp => "a list of (position, value)",
             Self::ColorRamp => "a list of (position, (red, green, blue))",
             Self::Components => "a list of components",

@@ -47,6 +47,7 @@ fn one_velocity_counts_for_all_particles() {
     let both = moved("[(0, 0, 24)]");
     assert!(both.iter().zip([4.0, 7.0]).all(|(place, z)| (place[2] - z).abs() < 1e-4), "{both:?}");
     assert_eq!(both, moved("[(0, 0, 24), (0, 0, 24)]"));
+    assert_eq!(both, moved("(0, 0, 24)"));
 }
 
 #[test]

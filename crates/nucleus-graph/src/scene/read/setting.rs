@@ -47,6 +47,10 @@ pub(super) fn read(
         Kind::Floats => AttrValue::Floats(list(label, row, node, findings, |node, findings| {
             number(label, node, findings)
         })?),
+        // A vector alone counts for all points.
+        Kind::Vectors if matches!(node.value, Value::Tuple { name: None, .. }) => {
+            AttrValue::Vectors(vec![triple(label, row, node, findings)?])
+        }
         Kind::Vectors => AttrValue::Vectors(list(label, row, node, findings, |node, findings| {
             triple(label, row, node, findings)
         })?),
