@@ -281,6 +281,16 @@ impl Check {
         self.form
     }
 
+    /// The frame from which on it applies, if it has one.
+    pub(crate) fn first_frame(&self) -> Option<f64> {
+        self.form.parameters.first().filter(|name| **name == FRAME).and(self.arguments.first().copied())
+    }
+
+    /// Whether it limits its figure, and no figure is below zero, to less than zero.
+    pub(crate) fn is_below_zero(&self) -> bool {
+        matches!(self.limit(), (Bound::AtMost, limit) if limit < 0.0)
+    }
+
     /// Its arguments, in the order of [`Form::parameters`].
     pub fn arguments(&self) -> &[f64] {
         &self.arguments
@@ -299,8 +309,7 @@ impl Check {
 
     /// Whether it applies to a frame.
     fn applies_to(&self, frame: i64) -> bool {
-        let from = self.form.parameters.first().filter(|name| **name == FRAME).and(self.arguments.first());
-        from.is_none_or(|from| frame as f64 >= *from)
+        self.first_frame().is_none_or(|from| frame as f64 >= from)
     }
 
     /// Whether a figure is within the limit. NaN never is.

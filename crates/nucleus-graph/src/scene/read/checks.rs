@@ -7,14 +7,31 @@ use crate::scene::syntax::{Node, Value, Word};
 use super::fields::{Fields, current_name};
 use super::value::{found, number, whole_number};
 
-/// Reads the checks of a scene.
-pub(super) fn read(node: &Node, findings: &mut Findings) -> Vec<Check> {
+/// Reads the checks of a scene whose last frame is `end`, if that could be read.
+pub(super) fn read(node: &Node, end: Option<i64>, findings: &mut Findings) -> Vec<Check> {
     let Value::List(items) = &node.value else {
         let message = format!("`checks` takes a list, found {}", found(&node.value));
         findings.error(&node.span, message).help("write `checks: [noPenetration]`");
         return Vec::new();
     };
-    items.iter().filter_map(|item| read_check(item, findings)).collect()
+    let mut checks = Vec::new();
+    for item in items {
+        let Some(check) = read_check(item, findings) else { continue };
+        warn_of_late_check(&check, item, end, findings);
+        checks.push(check);
+    }
+    checks
+}
+
+/// Warns of a check that applies from a frame on that the scene does not reach: it fails, unless the run is longer.
+fn warn_of_late_check(check: &Check, node: &Node, end: Option<i64>, findings: &mut Findings) {
+    let (Some(first), Some(end)) = (check.first_frame(), end) else { return };
+    if first > end as f64 {
+        let message = format!("`{check}` cannot pass: the scene ends at frame {end}");
+        findings
+            .warning(&node.span, message)
+            .help("a check that applies to no frame fails: name an earlier one");
+    }
 }
 
 fn read_check(node: &Node, findings: &mut Findings) -> Option<Check> {
@@ -37,7 +54,13 @@ fn read_check(node: &Node, findings: &mut Findings) -> Option<Check> {
         return None;
     };
     let arguments = arguments(form, node, findings)?;
-    Check::new(form.name, &arguments)
+    let check = Check::new(form.name, &arguments)?;
+    if check.is_below_zero() {
+        let message = format!("`{check}` cannot pass: what it limits is never below 0");
+        findings.error(&node.span, message).help(form.doc);
+        return None;
+    }
+    Some(check)
 }
 
 fn arguments(form: &Form, node: &Node, findings: &mut Findings) -> Option<Vec<f64>> {

@@ -118,7 +118,8 @@ fn read_root(root: &Node, mut source: Source, findings: &mut Findings) -> Option
     let time =
         time::read(fields.take_required("time", "`time: (start: 1, end: 120, fps: 24)`", findings), findings);
     let record = fields.take("record").and_then(|node| time::read_record(node, findings));
-    let checks = fields.take("checks").map(|node| checks::read(node, findings));
+    let end = time.as_ref().map(|(time, _)| time.end);
+    let checks = fields.take("checks").map(|node| checks::read(node, end, findings));
     let nodes = fields.take_required("nodes", "`nodes: {\"nucleus1\": nucleus()}`", findings);
     let connections = connections::read(fields.take("connections"), findings);
     fields.refuse_rest("a scene", &["time", "record", "nodes", "connections", "checks"], findings);

@@ -158,6 +158,22 @@ impl NodeReader<'_, '_> {
         }
     }
 
+    /// Refuses a value of what can only be connected; its name may be close to that of an attribute with values.
+    fn plug(&mut self, label: &str, word: &Word, node: &Node) {
+        let node_type = self.declaration.node_type;
+        let takes_values = |row: &&&Attribute| {
+            matches!(row.effect, Effect::Solved(_))
+                && !matches!(row.kind, Kind::Plug(_))
+                && !node_type.has_no_use_for(row)
+        };
+        let names: Vec<&str> =
+            node_type.attributes().iter().filter(takes_values).map(|row| row.name).collect();
+        let error = self.findings.error(&node.span, format!("{label} can be connected, but not set"));
+        if let Some(name) = nearest(&word.text, names) {
+            error.did_you_mean(Some(name));
+        }
+    }
+
     fn attribute(&mut self, word: &Word, row: &'static Attribute, node: &Node) {
         if let Kind::Together(parts) = row.kind {
             return self.together(word, row, parts, node);
@@ -175,6 +191,7 @@ impl NodeReader<'_, '_> {
                 self.references.all.push(Reference { node: node_id, row, name, span });
             }
             Kind::Components => self.components(&label, row, node),
+            Kind::Plug(_) => self.plug(&label, word, node),
             Kind::Text if row == &n_base::PRESET.row => self.preset(&label, node),
             _ => {
                 if let Some(setting) = read(&label, row, node, self.findings) {

@@ -47,8 +47,8 @@ fn frame(name: &str, node: &Node, findings: &mut Findings) -> Option<i64> {
 fn frames_per_second(node: &Node, findings: &mut Findings) -> Option<f64> {
     let fps = number("`fps`", node, findings)?;
     if !is_frame_rate(fps) {
-        let error =
-            findings.error(&node.span, format!("`fps` must be above 0 and at most 1000000, found {fps}"));
+        let bounds = if fps <= 0.0 { "above 0" } else { "from 0.001 to 1000000" };
+        let error = findings.error(&node.span, format!("`fps` must be {bounds}, found {fps}"));
         error.help("Maya's film is 24, PAL 25, NTSC 30");
         return None;
     }

@@ -433,9 +433,48 @@ fn checks_that_count_take_whole_numbers_from_zero() {
 }
 
 #[test]
+fn a_check_that_cannot_pass_is_reported() {
+    let with_check = |check: &str| {
+        format!("Scene(time: (start: 1, end: 9, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])")
+    };
+    for check in ["maxStretch(-1)", "maxWeldGap(-0.1)", "atRestBy(frame: 3, speed: -1)"] {
+        let below = format!("`{check}` cannot pass: what it limits is never below 0");
+        assert_eq!(reported(&with_check(check))[0].1, below);
+    }
+    let warnings = |check: &str| {
+        let read = read_scene_text(&with_check(check), Path::new("test.ron")).expect("the run may be longer");
+        read.1.into_iter().map(|warning| warning.message).collect::<Vec<_>>()
+    };
+    for check in ["atRestBy(frame: 10, speed: 0.1)", "noIntersectionsAfter(10)"] {
+        assert_eq!(warnings(check), [format!("`{check}` cannot pass: the scene ends at frame 9")]);
+    }
+    for check in ["atRestBy(frame: 9, speed: 0)", "maxStretch(0)", "minGap(-1)"] {
+        assert_eq!(warnings(check), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_frame_rate_out_of_range_is_told_its_bound() {
+    let found = |fps: &str| {
+        let text = format!("Scene(time: (start: 1, end: 2, fps: {fps}), nodes: {{\"n\": nucleus()}})");
+        reported(&text)[0].1.clone()
+    };
+    assert_eq!(found("0"), "`fps` must be above 0, found 0");
+    assert_eq!(found("0.0001"), "`fps` must be from 0.001 to 1000000, found 0.0001");
+    assert_eq!(found("2000000"), "`fps` must be from 0.001 to 1000000, found 2000000");
+}
+
+#[test]
+fn an_input_that_cannot_be_set_names_the_attribute_that_is_meant() {
+    let found = &reported(&with_nodes(r#""p": nParticle(positions: [(0, 0, 0)])"#))[0];
+    assert_eq!(found.1, "`positions` of `p` can be connected, but not set");
+    assert_eq!(found.2.as_deref(), Some("did you mean `position`?"));
+}
+
+#[test]
 fn a_former_name_of_a_check_is_read_with_a_warning_that_gives_the_new_one() {
     let with_check = |check: &str| {
-        format!("Scene(time: (start: 1, end: 2, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])")
+        format!("Scene(time: (start: 1, end: 9, fps: 24), nodes: {{\"n\": nucleus()}}, checks: [{check}])")
     };
     for (former, current, arguments) in [
         ("maxTrapped", "maxDepenetrating", "(3)"),
