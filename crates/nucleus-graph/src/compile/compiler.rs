@@ -129,12 +129,17 @@ impl<'a> Compiler<'a> {
 
     /// Reserves the memory of an object; reports an error if the limit is exceeded.
     pub(super) fn claim(&mut self, object: NodeId, mesh: NodeId, size: Size, cost: Cost) -> Option<()> {
-        let Err(refused) = self.geometry.budget.claim(cost.of(size)) else { return Some(()) };
+        self.claim_bytes([object, mesh], &format!("of {} points", size.points), cost.of(size))
+    }
+
+    /// Claims memory for an object from a mesh; `what` describes it. `None` if it would exceed the limit, which is reported.
+    pub(super) fn claim_bytes(&mut self, [object, mesh]: [NodeId; 2], what: &str, bytes: u64) -> Option<()> {
+        let Err(refused) = self.geometry.budget.claim(bytes) else { return Some(()) };
         if !refused.is_first {
             return None;
         }
         let [object, mesh] = [object, mesh].map(|id| self.scene.graph.node(id).name());
-        let message = format!("`{object}`, of {} points, takes {refused}", size.points);
+        let message = format!("`{object}`, {what}, takes {refused}");
         let error = self.findings.error(&self.scene.source.place(mesh), message);
         error.help(refused.help(&format!("make `{mesh}` coarser")));
         None

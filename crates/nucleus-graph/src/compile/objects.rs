@@ -5,6 +5,7 @@ use nucleus_core::{Cloth, ClothId, ClothLists, Collider, ColliderId, Mass, Start
 
 use crate::attributes::{Key, n_base, n_cloth, n_particle, n_rigid, nucleus, particle, surface_shape};
 use crate::graph::{Graph, NodeId};
+use crate::memory;
 use crate::mesh::area;
 
 use super::animated_mesh::AnimatedMesh;
@@ -17,6 +18,9 @@ use super::sources::{ClothSource, ColliderSource, MapScales, RecordedPoints};
 use super::thickness::{CLOTH_SHARE, COLLIDER_SHARE, default_thickness, is_dense};
 use super::units::{self, CLASSIC};
 use super::vertex_maps::CompiledMaps;
+
+/// Corners of a face above which its cross links are worth a warning: 1952 of 64 corners.
+const MANY_CORNERS: usize = 64;
 
 impl Compiler<'_> {
     /// Compiles all objects and constraints, except broken ones and those made from a broken mesh. The result is
@@ -82,6 +86,7 @@ impl Compiler<'_> {
         let mass = self.mass_of(id, &scales);
         self.warn_of_free_points(self.scene.graph.node(id).name(), mesh, &surface);
         let lists = constraint_lists(&self.scene.graph, id, self.program.node, &scales);
+        self.check_polygons([id, mesh], &surface, lists)?;
         let followed = self.followed_mesh(id, mesh, &vertex_maps.input_attract);
         let (faces, area) = (surface.faces.len(), area(&surface.faces, &surface.positions));
         let split_off = tearing.as_ref().map_or_else(Vec::new, |tearing| tearing.twins.clone());
@@ -208,6 +213,38 @@ impl Compiler<'_> {
                     .warning(&self.scene.source.place(&format!("{}.{}", node.name(), key.row.name)), message);
             }
         }
+    }
+
+    /// Claims the memory of the cross links of polygons, whose number grows with the square of the corners, and warns of
+    /// large ones.
+    fn check_polygons(
+        &mut self,
+        [cloth, mesh]: [NodeId; 2],
+        surface: &Surface,
+        lists: ClothLists,
+    ) -> Option<()> {
+        let sets = u64::from(lists.cross_links) + u64::from(lists.shear);
+        if sets == 0 {
+            return Some(());
+        }
+        let links = |face: &[u32]| sets * face.len() as u64 * (face.len() as u64).saturating_sub(3) / 2;
+        let polygons = surface.faces.iter().filter(|face| face.len() > 4);
+        let all: u64 = polygons.map(links).sum();
+        let what = format!("with {all} cross links");
+        self.claim_bytes([cloth, mesh], &what, all.saturating_mul(memory::CROSS_LINK))?;
+        let largest =
+            surface.faces.iter().max_by_key(|face| face.len()).filter(|face| face.len() > MANY_CORNERS);
+        if let Some(face) = largest {
+            let [cloth, place] = [cloth, mesh].map(|id| self.scene.graph.node(id).name());
+            let message = format!(
+                "`{cloth}` has a face of {} corners, which takes {} cross links",
+                face.len(),
+                links(face)
+            );
+            let warning = self.findings.warning(&self.scene.source.place(place), message);
+            warning.help("split it into triangles or quads, or write `addCrossLinks: false`");
+        }
+        Some(())
     }
 
     /// Points without a face have no constraints: they fall freely, which is rarely intended.

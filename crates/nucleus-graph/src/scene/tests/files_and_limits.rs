@@ -91,6 +91,40 @@ fn nodes_that_take_too_much_memory_are_refused_with_both_figures() {
     );
 }
 
+#[test]
+fn the_cross_links_of_a_face_of_many_corners_are_warned_of_and_count_as_memory() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let polygon = |name: &str, corners: usize| {
+        let points = (0..corners).map(|k| {
+            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / corners as f64).sin_cos();
+            format!("v {cosine} 0 {}\n", -sine)
+        });
+        let face = (1..=corners).map(|k| format!(" {k}"));
+        let text: String = points.chain(["f".to_owned()]).chain(face).collect();
+        fs::write(folder.path().join(name), text + "\n").expect("written");
+    };
+    polygon("many.obj", 100);
+    polygon("few.obj", 64);
+    let compiled = |mesh: &str, cloth: &str, bytes: u64| {
+        let text =
+            with_nodes(&format!(r#""m": mesh(file: "{mesh}"), "c1": nCloth(inputMesh: "m", {cloth})"#));
+        let memory = crate::memory::Memory(bytes);
+        let file = folder.path().join("scene.ron");
+        let (scene, _) = read_scene_within(&text, &file, memory).expect("it reads");
+        let program = crate::compile::compile(&scene).map(|program| program.warnings().to_vec());
+        let found = program.unwrap_or_else(|errors| errors);
+        found.into_iter().map(|one| one.message).collect::<Vec<_>>()
+    };
+    let warning = "`c1` has a face of 100 corners, which takes 4850 cross links";
+    assert_eq!(compiled("many.obj", "", 1_000_000), [warning]);
+    assert_eq!(compiled("many.obj", "addCrossLinks: false", 1_000_000), Vec::<String>::new());
+    assert_eq!(compiled("few.obj", "", 1_000_000), Vec::<String>::new());
+    // The cloth alone takes 110 kB, and its cross links 364 kB.
+    let refused = compiled("many.obj", "", 300_000);
+    assert!(refused[0].starts_with("`c1`, with 4850 cross links, takes about 364 kB"), "{refused:?}");
+    assert_eq!(compiled("many.obj", "addCrossLinks: false", 300_000), Vec::<String>::new());
+}
+
 #[cfg(unix)]
 #[test]
 fn only_regular_files_are_read() {
