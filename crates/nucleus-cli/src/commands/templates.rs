@@ -67,8 +67,13 @@ impl New {
     /// Writes the file, and its mesh if it has one; prints the command that runs it.
     pub fn run(self) -> Result<Outcome> {
         let mut scene = self.scene.unwrap_or_else(|| self.template.name().into());
-        if scene.extension().is_none() {
-            scene.set_extension("ron");
+        match scene.extension() {
+            None => drop(scene.set_extension("ron")),
+            Some(extension) if extension == "ron" => {}
+            Some(_) => {
+                let ron = scene.with_extension("ron");
+                bail!("scenes end in `.ron`: write `{}`", shell_word(&ron))
+            }
         }
         let mut text = self.template.text().to_owned();
         if self.template == Template::Garment {

@@ -18,6 +18,9 @@ fn a_new_scene_can_run_and_replaces_no_file() {
     let again = nucleus(folder.path(), &["new", "drape.ron"]);
     assert!(folder.path().join("garment_skirt.obj").exists());
     assert_refused(&again, "`drape.ron` exists; give another name");
+    let text = nucleus(folder.path(), &["new", "first.txt"]);
+    assert_refused(&text, "scenes end in `.ron`: write `first.ron`");
+    assert!(!folder.path().join("first.txt").exists());
 }
 
 #[cfg(unix)]
