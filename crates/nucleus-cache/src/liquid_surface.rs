@@ -4,10 +4,10 @@
 //! the particles around it, less the radius that a particle has on its own. Surface nets (Gibson 1998, "Constrained elastic
 //! surface nets") make the mesh: a point in each cell of a grid that the surface passes, at the mean of where it crosses the
 //! edges of the cell, and a quad across each edge that it crosses. The grid is stored in blocks about the particles, so its
-//! memory grows with the space that is near any: a particle far from all others takes about 100 kB, and one of many close
+//! memory grows with the space that is near any: a particle far from all others takes about 16 kB, and one of many close
 //! together about 200 bytes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Read, Seek};
 
 use crate::error::ReadError;
@@ -24,20 +24,16 @@ const CELLS: f32 = 2.0;
 const MAX_RADIUS_SCALE: f32 = 4.0;
 /// Cells from the origin, at most: particles beyond, as of a broken run, have no surface.
 const MAX_CELLS: f32 = 1e9;
-/// Cells along the side of a block.
-const SIDE: i32 = 8;
+/// Cells along the side of a block, a quarter of the diameter that a particle reaches: larger blocks store more that none
+/// reaches, smaller ones are more to look up.
+const SIDE: i32 = 4;
 /// Corners of a block.
 const CORNERS: usize = (SIDE * SIDE * SIDE) as usize;
 /// A cell that the surface does not pass.
 const NO_POINT: u32 = u32::MAX;
 
-/// Corners of the grid and the cells above them, `SIDE` along each axis.
-struct Block {
-    /// By corner: the weighted sum of the particles relative to the corner, in spacings, and of the weights.
-    sums: Vec<[f32; 4]>,
-    /// By cell: its point.
-    points: Vec<u32>,
-}
+/// A place in blocks.
+type Key = [i32; 3];
 
 /// A surface.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -107,20 +103,9 @@ fn spacing(particles: &[[f32; 3]]) -> Option<f32> {
 impl LiquidSurface {
     /// The surface of particles of this spacing, in their units.
     pub fn of(particles: &[[f32; 3]], spacing: f32, shape: SurfaceShape) -> Self {
-        let scale = shape.radius_scale.min(MAX_RADIUS_SCALE);
-        let mut grid = Grid {
-            width: spacing / CELLS,
-            reach: REACH.max(1.5 * RADIUS * scale),
-            radius: RADIUS * scale,
-            // Weight below which the distance grows: between particles that are far apart their mean is no surface.
-            least_weight: shape.threshold.max(1e-6),
-            blocks: BTreeMap::new(),
-        };
-        let is_in_reach = |place: &&[f32; 3]| place.iter().all(|x| (x / grid.width).abs() < MAX_CELLS);
-        let reached: Vec<_> = particles.iter().filter(is_in_reach).collect();
-        reached.into_iter().for_each(|place| grid.add(*place));
+        let mut grid = Grid::of(particles, spacing, shape);
         let mut surface = Self::default();
-        let keys: Vec<[i32; 3]> = grid.blocks.keys().copied().collect();
+        let keys = grid.keys();
         for &key in &keys {
             grid.add_points(key, &mut surface.positions);
         }
@@ -137,69 +122,108 @@ struct Grid {
     reach: f32,
     radius: f32,
     least_weight: f32,
-    /// By their place in blocks.
-    blocks: BTreeMap<[i32; 3], Block>,
+    /// In each block that a particle reaches, by corner: the weighted sum of the particles relative to the corner, in
+    /// spacings, and of the weights.
+    sums: BTreeMap<Key, Vec<[f32; 4]>>,
+    /// In each block that the surface passes, by the lowest corner of a cell: its point.
+    points: BTreeMap<Key, Vec<u32>>,
 }
 
 /// The block of a corner, and its index in it.
-fn index([x, y, z]: [i32; 3]) -> ([i32; 3], usize) {
+fn index([x, y, z]: [i32; 3]) -> (Key, usize) {
     let block = [x, y, z].map(|k| k.div_euclid(SIDE));
     let [x, y, z] = [x, y, z].map(|k| k.rem_euclid(SIDE));
     (block, ((z * SIDE + y) * SIDE + x) as usize)
 }
 
 /// The corners of a block.
-fn corners([x, y, z]: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
+fn corners([x, y, z]: Key) -> impl Iterator<Item = [i32; 3]> {
     (0..CORNERS as i32)
         .map(move |k| [x * SIDE + k % SIDE, y * SIDE + k / SIDE % SIDE, z * SIDE + k / (SIDE * SIDE)])
 }
 
 impl Grid {
-    /// Adds a particle to the corners in its reach, and makes room for the cells about them.
+    /// The grid of particles of this spacing, in their units.
+    fn of(particles: &[[f32; 3]], spacing: f32, shape: SurfaceShape) -> Self {
+        let scale = shape.radius_scale.min(MAX_RADIUS_SCALE);
+        let mut grid = Grid {
+            width: spacing / CELLS,
+            reach: REACH.max(1.5 * RADIUS * scale),
+            radius: RADIUS * scale,
+            // Weight below which the distance grows: between particles that are far apart their mean is no surface.
+            least_weight: shape.threshold.max(1e-6),
+            sums: BTreeMap::new(),
+            points: BTreeMap::new(),
+        };
+        let is_in_reach = |place: &&[f32; 3]| place.iter().all(|x| (x / grid.width).abs() < MAX_CELLS);
+        let reached: Vec<_> = particles.iter().filter(is_in_reach).collect();
+        reached.into_iter().for_each(|place| grid.add(*place));
+        grid
+    }
+
+    /// Adds a particle to the corners in its reach.
     fn add(&mut self, place: [f32; 3]) {
         let place = place.map(|x| x / self.width);
         let reach = self.reach * CELLS;
-        let [low, high] = [-1.0f32, 1.0].map(|side| place.map(|x| (x + side * (reach + 1.0)).floor() as i32));
+        let [low, high] = [-1.0f32, 1.0].map(|side| place.map(|x| (x + side * reach).floor() as i32));
         let blocks = [low, high].map(|corner| index(corner).0);
         for x in blocks[0][0]..=blocks[1][0] {
             for y in blocks[0][1]..=blocks[1][1] {
                 for z in blocks[0][2]..=blocks[1][2] {
-                    let new = || Block { sums: vec![[0.0; 4]; CORNERS], points: vec![NO_POINT; CORNERS] };
-                    let block = self.blocks.entry([x, y, z]).or_insert_with(new);
-                    let range = |k: usize, block: i32| {
-                        low[k].max(block * SIDE)..=high[k].min(block * SIDE + SIDE - 1)
-                    };
-                    for k in range(2, z) {
-                        for j in range(1, y) {
-                            for i in range(0, x) {
-                                let apart = [place[0] - i as f32, place[1] - j as f32, place[2] - k as f32]
-                                    .map(|x| x / CELLS);
-                                let square =
-                                    apart.iter().map(|x| x * x).sum::<f32>() / (self.reach * self.reach);
-                                let left = (1.0 - square).max(0.0);
-                                let weight = left * left * left;
-                                let sum = &mut block.sums[index([i, j, k]).1];
-                                (0..3).for_each(|axis| sum[axis] += weight * apart[axis]);
-                                sum[3] += weight;
-                            }
-                        }
-                    }
+                    self.add_to_block(place, [x, y, z], [low, high]);
                 }
             }
         }
     }
 
+    /// Adds a particle to those corners of a block that are between `low` and `high` and in its reach; `place` in cells.
+    fn add_to_block(&mut self, place: [f32; 3], key: Key, [low, high]: [[i32; 3]; 2]) {
+        let range = |k: usize| [low[k].max(key[k] * SIDE), high[k].min(key[k] * SIDE + SIDE - 1)];
+        let apart =
+            |corner: [i32; 3]| -> [f32; 3] { std::array::from_fn(|k| (place[k] - corner[k] as f32) / CELLS) };
+        let left = |apart: [f32; 3]| {
+            let square = apart.iter().map(|x| x * x).sum::<f32>() / (self.reach * self.reach);
+            (1.0 - square).max(0.0)
+        };
+        let nearest = std::array::from_fn(|k| {
+            let [low, high] = range(k);
+            (place[k].round() as i32).max(low).min(high)
+        });
+        if left(apart(nearest)) == 0.0 {
+            return;
+        }
+        let sums = self.sums.entry(key).or_insert_with(|| vec![[0.0; 4]; CORNERS]);
+        let along = |k: usize| range(k)[0]..=range(k)[1];
+        for [i, j, k] in along(2).flat_map(|k| along(1).flat_map(move |j| along(0).map(move |i| [i, j, k]))) {
+            let apart = apart([i, j, k]);
+            let left = left(apart);
+            let weight = left * left * left;
+            let sum = &mut sums[index([i, j, k]).1];
+            (0..3).for_each(|axis| sum[axis] += weight * apart[axis]);
+            sum[3] += weight;
+        }
+    }
+
+    /// The blocks whose cells have a corner that a particle reaches.
+    fn keys(&self) -> BTreeSet<Key> {
+        let below = |key: &Key| {
+            let key = *key;
+            (0..8).map(move |k: usize| std::array::from_fn(|axis| key[axis] - (k >> axis & 1) as i32))
+        };
+        self.sums.keys().flat_map(below).collect()
+    }
+
     /// The signed distance of a corner in spacings.
     fn distance(&self, corner: [i32; 3]) -> f32 {
         let (block, at) = index(corner);
-        let [x, y, z, weight] = self.blocks.get(&block).map_or([0.0; 4], |block| block.sums[at]);
+        let [x, y, z, weight] = self.sums.get(&block).map_or([0.0; 4], |sums| sums[at]);
         let sparse = (1.0 - weight / self.least_weight).max(0.0) * self.reach;
         let length = (x * x + y * y + z * z).sqrt() / weight.max(1e-9);
         length.min(self.reach) - self.radius + sparse
     }
 
     /// Adds a point in each cell of a block that the surface passes.
-    fn add_points(&mut self, key: [i32; 3], positions: &mut Vec<[f32; 3]>) {
+    fn add_points(&mut self, key: Key, positions: &mut Vec<[f32; 3]>) {
         for cell in corners(key) {
             let corner = |k: usize| std::array::from_fn(|axis| cell[axis] + (k >> axis & 1) as i32);
             let distances: [f32; 8] = std::array::from_fn(|k| self.distance(corner(k)));
@@ -216,9 +240,7 @@ impl Grid {
             if count > 0.0 {
                 let (block, at) = index(cell);
                 let point = positions.len() as u32;
-                if let Some(block) = self.blocks.get_mut(&block) {
-                    block.points[at] = point;
-                }
+                self.points.entry(block).or_insert_with(|| vec![NO_POINT; CORNERS])[at] = point;
                 positions.push(sum.map(|x| x / count * self.width));
             }
         }
@@ -226,11 +248,11 @@ impl Grid {
 
     fn point(&self, cell: [i32; 3]) -> Option<u32> {
         let (block, at) = index(cell);
-        self.blocks.get(&block).map(|block| block.points[at]).filter(|point| *point != NO_POINT)
+        self.points.get(&block).map(|points| points[at]).filter(|point| *point != NO_POINT)
     }
 
     /// Adds a quad across each edge of a block that the surface crosses.
-    fn add_quads(&self, key: [i32; 3], quads: &mut Vec<[u32; 4]>) {
+    fn add_quads(&self, key: Key, quads: &mut Vec<[u32; 4]>) {
         for corner in corners(key) {
             let own = self.distance(corner) < 0.0;
             for axis in 0..3 {
@@ -337,6 +359,16 @@ mod tests {
         let alone = LiquidSurface::of(&particles, 0.02, SurfaceShape::DEFAULT);
         particles.extend([[f32::NAN, 0.0, 0.0], [0.0, f32::INFINITY, 0.0], [0.0, 0.0, -f32::MAX]]);
         assert_eq!(LiquidSurface::of(&particles, 0.02, SurfaceShape::DEFAULT), alone);
+    }
+
+    #[test]
+    fn a_particle_far_from_all_others_takes_little_memory() {
+        let shape = SurfaceShape::DEFAULT;
+        let apart: Vec<[f32; 3]> = (0..64).map(|k| [1.037, 0.413, 0.271].map(|x| x * k as f32)).collect();
+        let grid = Grid::of(&apart, 0.1, shape);
+        let bytes = size_of::<[f32; 4]>() * grid.sums.len() + size_of::<u32>() * grid.points.len();
+        let each = bytes * CORNERS / apart.len();
+        assert!(each < 20_000, "{each} bytes");
     }
 
     #[test]
