@@ -406,7 +406,7 @@ checkpoint_struct!([R: Real] State<R> {
     values: [frames, wind_travel],
     parts: [populations],
     rebuilt: [
-        start, depenetration, bearing_depenetration, pushed_out, displaced, step_length, predicted, normal, corrections, area, added_wind,
+        start, depenetration, bearing_depenetration, pushed_out, displaced, step_length, predicted, normal, corrections, area, inflation, added_wind,
         field, spins, inverse_mass
     ],
 });

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nucleus_core::{
     Cloth, ClothFrame, ClothLists, ColliderId, ConstraintFrame, Elements, FrameInput, Link, LinkSide, Mass,
-    ModelBuilder, PointId, SelfCollision, Solver, StateView, StepObserver, SubstepIndex,
+    ModelBuilder, PointId, Pressure, SelfCollision, Solver, StateView, StepObserver, SubstepIndex,
 };
 use scenes::links::point;
 
@@ -104,10 +104,33 @@ fn stack() -> (ModelBuilder, FrameInput) {
     (builder, input)
 }
 
+/// A sphere of cloth with a hole, sealed or open, that gas inflates.
+fn balloon(sealed: bool) -> (ModelBuilder, FrameInput) {
+    let mut surface = scenes::sphere(0.5, scenes::Vec3::zeros());
+    let faces = &surface.faces;
+    surface.faces = (1..faces.len()).map(|at| faces.face(at)).collect();
+    let lists = ClothLists { stretch: true, pressure: true, damp: true, ..ClothLists::NONE };
+    let pressure = Pressure::Gas { start: 0.3, bulk: 1e3, pump: 0.0, tightness: 1.0, damping: 0.0, sealed };
+    let cloth = ClothFrame { pressure, damp: 1.0, ..scenes::still() };
+    let input = FrameInput {
+        gravity: scenes::Vec3::zeros(),
+        cloths: vec![cloth],
+        ..scenes::frame(3, scenes::physical(48.0))
+    };
+    (scenes::one_cloth(surface, lists), input)
+}
+
 // One test, because the count is of the whole program.
 #[test]
 fn a_warm_substep_allocates_nothing() {
-    for (name, (builder, input)) in [("drape", drape()), ("tied", tied_drape()), ("stack", stack())] {
+    let scenes = [
+        ("drape", drape()),
+        ("tied", tied_drape()),
+        ("stack", stack()),
+        ("sealed", balloon(true)),
+        ("open", balloon(false)),
+    ];
+    for (name, (builder, input)) in scenes {
         assert_eq!(allocations(builder, input), 0, "allocations in two substeps of the 61st frame: {name}");
     }
 }

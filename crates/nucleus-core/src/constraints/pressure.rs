@@ -33,6 +33,7 @@ use crate::model::surface::{Faces, Surface};
 use crate::model::topology::components;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
+use crate::state::inflation::{ChamberSums, Inflation};
 use crate::state::{Chamber, State};
 
 use holes::{boundary_loops, cap_area, cap_corner, cap_volume};
@@ -82,24 +83,6 @@ pub struct PressureModel {
 struct Hole {
     corners: Vec<u32>,
     chamber: u32,
-}
-
-/// Sums over a chamber in one time step.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    /// Three times the volume.
-    volume: f64,
-    /// Σ w |a|².
-    mobility: f64,
-    /// The largest w² |a|² of a point.
-    fastest: f64,
-    /// Σ |a| in m²: about the area of the mesh.
-    area: f64,
-    /// Area of the holes in m², and the flow of still air into them in m³/s.
-    hole: f64,
-    inflow: f64,
-    /// Whether it is torn or in pieces, so that its volume has no meaning.
-    is_torn: bool,
 }
 
 impl PressureModel {
@@ -194,15 +177,18 @@ impl PressureModel {
 
     /// The chambers as they are when nothing has moved yet. What they hold is measured by the mesh, wherever the points start.
     pub fn start<R: Real>(&mut self, blocks: &Blocks, state: &mut State<R>, pool: &ThreadPool) {
-        self.find_areas(blocks, state, false, pool);
+        let mut columns = std::mem::take(&mut state.inflation);
+        self.find_areas(blocks, state, false, &mut columns.corners, pool);
+        self.add_up(blocks, state, false, &mut columns);
         if self.can_tear() {
             let area = &state.area[blocks.range(0).start as usize..];
             self.pieces.start(&self.chamber, area, self.radii.len());
         }
-        for (index, sums) in self.sums(blocks, state, false).into_iter().enumerate() {
+        for (index, sums) in columns.sums.iter().enumerate() {
             let (start_volume, volume) = (self.volumes[index], sums.volume / 3.0);
             state.chambers[self.first + index] = Chamber { start_volume, volume, amount: -1.0, torn: 0.0 };
         }
+        state.inflation = columns;
     }
 
     /// Moves the points of a cloth as the pressure of one time step of `h` seconds says.
@@ -214,22 +200,25 @@ impl PressureModel {
         pool: &ThreadPool,
     ) {
         let sealed = matches!(frame.pressure, Pressure::Gas { sealed: true, .. });
-        self.find_areas(blocks, state, sealed, pool);
-        let mut sums = self.sums(blocks, state, sealed);
+        let mut columns = std::mem::take(&mut state.inflation);
+        self.find_areas(blocks, state, sealed, &mut columns.corners, pool);
+        self.add_up(blocks, state, sealed, &mut columns);
+        let Inflation { sums, pushes, pieces, shares, .. } = &mut columns;
         for ((index, sums), chamber) in sums.iter_mut().enumerate().zip(&state.chambers[self.first..]) {
             sums.is_torn = chamber.torn > 0.0 || !self.pieces.is_one(index);
         }
         let gases = &mut state.chambers[self.first..self.first + sums.len()];
-        let step = |((sums, chamber), radius): ((&Sums, &mut Chamber), &f64)| {
+        let step = |((sums, chamber), radius): ((&ChamberSums, &mut Chamber), &f64)| {
             chamber.step(frame, sums, radius * frame.rest_scale)
         };
-        let pushes: Vec<R> = sums.iter().zip(gases).zip(&self.radii).map(step).map(R::from_f64).collect();
+        pushes.clear();
+        pushes.extend(sums.iter().zip(gases).zip(&self.radii).map(step).map(R::from_f64));
         let displacement = DisjointSlice::new(&mut state.displacement);
         let (area, first) = (&state.area, blocks.range(0).start);
-        let shares: Vec<R> = match self.can_tear() {
-            true => self.pieces.shares(&area[first as usize..]).into_iter().map(R::from_f64).collect(),
-            false => Vec::new(),
-        };
+        shares.clear();
+        if self.can_tear() {
+            shares.extend(self.pieces.shares(&area[first as usize..], pieces).map(R::from_f64));
+        }
         pool.parallel_for(blocks.len(), |block| {
             // SAFETY: blocks do not overlap.
             #[allow(unsafe_code)]
@@ -245,10 +234,18 @@ impl PressureModel {
                 (0..3).for_each(|axis| point.0[axis] += scale * a[axis]);
             }
         });
+        state.inflation = columns;
     }
 
     /// Sets ∂V/∂x of every point, with the caps of the holes if they are sealed.
-    fn find_areas<R: Real>(&self, blocks: &Blocks, state: &mut State<R>, sealed: bool, pool: &ThreadPool) {
+    fn find_areas<R: Real>(
+        &self,
+        blocks: &Blocks,
+        state: &mut State<R>,
+        sealed: bool,
+        corners: &mut Vec<Vector3<f64>>,
+        pool: &ThreadPool,
+    ) {
         let State { anchor, displacement, area, .. } = state;
         let position = |row: u32| at(anchor, displacement, row);
         let areas = DisjointSlice::new(area);
@@ -267,17 +264,25 @@ impl PressureModel {
             }
         });
         for hole in self.holes.iter().filter(|_| sealed) {
-            let corners: Vec<_> = hole.corners.iter().map(|&row| at(anchor, displacement, row)).collect();
-            let shared = cap_area(&corners) / (3.0 * corners.len() as f64);
+            corners.clear();
+            corners.extend(hole.corners.iter().map(|&row| at(anchor, displacement, row)));
+            let shared = cap_area(corners) / (3.0 * corners.len() as f64);
             for (k, &row) in hole.corners.iter().enumerate() {
-                add(&mut area[row as usize], cap_corner(&corners, k) + shared);
+                add(&mut area[row as usize], cap_corner(corners, k) + shared);
             }
         }
     }
 
-    /// Sums over each chamber, point by point in a fixed order.
-    fn sums<R: Real>(&self, blocks: &Blocks, state: &State<R>, sealed: bool) -> Vec<Sums> {
-        let mut sums = vec![Sums::default(); self.chambers()];
+    /// Sets the sums over each chamber, point by point in a fixed order.
+    fn add_up<R: Real>(
+        &self,
+        blocks: &Blocks,
+        state: &State<R>,
+        sealed: bool,
+        Inflation { sums, corners, .. }: &mut Inflation<R>,
+    ) {
+        sums.clear();
+        sums.resize(self.chambers(), ChamberSums::default());
         let points = blocks.range(0).start..blocks.range(blocks.len() - 1).end;
         // Relative to a point of the cloth, so that a chamber far from the origin loses nothing.
         let origin = Vector3::from(state.position(points.start));
@@ -291,19 +296,18 @@ impl PressureModel {
             sums.area += a.norm();
         }
         for hole in self.holes.iter().filter(|_| !sealed) {
-            let corners: Vec<_> =
-                hole.corners.iter().map(|&row| Vector3::from(state.position(row)) - origin).collect();
+            corners.clear();
+            corners.extend(hole.corners.iter().map(|&row| Vector3::from(state.position(row)) - origin));
             let velocities = hole.corners.iter().map(|&row| state.velocity[row as usize].xyz());
             let velocity: Vector3<f64> =
                 velocities.map(|v| Vector3::from(v.map(R::to_f64))).sum::<Vector3<f64>>()
                     / corners.len() as f64;
-            let area = cap_area(&corners);
+            let area = cap_area(corners);
             let sums = &mut sums[hole.chamber as usize];
-            sums.volume += 3.0 * cap_volume(&corners);
+            sums.volume += 3.0 * cap_volume(corners);
             sums.hole += area.norm();
             sums.inflow += velocity.dot(&area);
         }
-        sums
     }
 }
 
@@ -331,7 +335,7 @@ pub struct PressureFrame<'a> {
     pub rest_scale: f64,
 }
 
-impl Sums {
+impl ChamberSums {
     /// The push λ within its limits, for a chamber of this volume in m³ along its normals, of its volume in the step before,
     /// and of this radius in metres. A vacuum is a pressure that inflates the mesh inside out.
     ///
@@ -359,7 +363,7 @@ impl Sums {
 
 impl Chamber {
     /// Advances the gas by a time step; λ in Pa·s², along the area vectors. `radius` is that of a sphere of the rest area.
-    fn step(&mut self, frame: &PressureFrame<'_>, sums: &Sums, radius: f64) -> f64 {
+    fn step(&mut self, frame: &PressureFrame<'_>, sums: &ChamberSums, radius: f64) -> f64 {
         let PressureFrame { h, air_density, .. } = *frame;
         // A mesh that is inside out has its gas on the side its normals turn from.
         let side = if self.start_volume < 0.0 { -1.0 } else { 1.0 };
@@ -503,7 +507,7 @@ mod tests {
             Pressure::Gas { start: 1.0, bulk: 1e3, pump: 0.0, tightness: 1.0, damping: 0.0, sealed: true };
         let frame = PressureFrame { pressure: &pressure, h: 1e-3, air_density: 1.0, rest_scale: 1.0 };
         // A rigid chamber of a litre.
-        let still = Sums { volume: 3e-3, ..Sums::default() };
+        let still = ChamberSums { volume: 3e-3, ..ChamberSums::default() };
         let mut chamber = Chamber { start_volume: 1e-3, volume: 1e-3, amount: -1.0, torn: 0.0 };
         chamber.step(&frame, &still, 0.06);
         assert_eq!(chamber.amount, 2.0, "whole");

@@ -31,6 +31,7 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
         corrections,
         normal,
         area,
+        inflation,
         added_wind,
         field,
         frames: _,
@@ -63,6 +64,7 @@ fn of_state<R: Real>(state: &State<R>) -> usize {
     rows + size_of_val(&anchor[..])
         + size_of_val(&normal[..])
         + chambers
+        + inflation.bytes()
         + spins
         + size_of_val(&inverse_mass[..])
         + populations

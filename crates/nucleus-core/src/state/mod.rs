@@ -5,6 +5,7 @@
 //! body 10 units above the origin stops falling at 200 substeps a frame, because a step is smaller than the last bit of
 //! its height.
 
+pub mod inflation;
 pub mod kinematics;
 pub mod rows;
 pub mod start;
@@ -16,6 +17,8 @@ use nalgebra::Vector3;
 use crate::bytes::{HASH_SEED, hash_word};
 use crate::math::{Real, Row4, sub};
 use crate::particles::population::Population;
+
+use inflation::Inflation;
 
 /// The points of all cloths, in the solver's order; positions in world space.
 #[derive(Debug, Clone)]
@@ -51,6 +54,8 @@ pub struct State<R> {
     pub normal: Vec<[R; 3]>,
     /// ∂V/∂x of the volume inside, in m²; empty where no cloth has pressure. Written and read in a pass.
     pub area: Vec<Row4<R>>,
+    /// Other columns of that pass.
+    pub inflation: Inflation<R>,
     /// What gusts, wind shadows and pushed air add to the wind, in m/s; empty where nothing does. Written once per
     /// substep.
     pub added_wind: Vec<Row4<R>>,

@@ -40,6 +40,7 @@ impl<R: Real> State<R> {
             corrections: _,
             normal: _,
             area: _,
+            inflation: _,
             added_wind: _,
             spins: _,
             pushed_out: _,

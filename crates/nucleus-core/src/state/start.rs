@@ -4,6 +4,7 @@ use crate::math::{Real, Row4};
 use crate::model::ClothModel;
 use crate::model::objects::{Cloth, point_masses};
 use crate::particles::population::Population;
+use crate::state::inflation::Inflation;
 use crate::state::{State, inverse_mass_of};
 
 impl<R: Real> State<R> {
@@ -28,6 +29,7 @@ impl<R: Real> State<R> {
             ],
             normal: vec![[R::ZERO; 3]; if air { rows } else { 0 }],
             area: vec![Row4::ZERO; if models.iter().any(|model| model.pressure.is_on()) { rows } else { 0 }],
+            inflation: Inflation::default(),
             added_wind: Vec::new(),
             field: Vec::new(),
             frames: 0,

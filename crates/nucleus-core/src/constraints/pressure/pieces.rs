@@ -7,9 +7,8 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Vector3;
-
 use crate::math::{Real, Row4};
+use crate::state::inflation::AreaSums;
 use crate::union_find::UnionFind;
 
 /// The chamber of a point of no face.
@@ -26,26 +25,6 @@ pub(super) struct Pieces {
     closed: Vec<f64>,
     /// By chamber: the number of its pieces.
     counts: Vec<u32>,
-}
-
-/// Sums of the area vectors, and of their lengths.
-#[derive(Clone, Copy, Default)]
-struct AreaSums {
-    vectors: Vector3<f64>,
-    lengths: f64,
-}
-
-impl AreaSums {
-    fn add<R: Real>(&mut self, area: &Row4<R>) {
-        let area = Vector3::from(area.xyz().map(R::to_f64));
-        self.vectors += area;
-        self.lengths += area.norm();
-    }
-
-    /// 1 for a closed surface, 0 for a flat one.
-    fn closed(&self) -> f64 {
-        if self.lengths > 0.0 { (1.0 - self.vectors.norm() / self.lengths).max(0.0) } else { 0.0 }
-    }
 }
 
 /// A mesh that is less closed than this at the start is a sheet, and every piece of it gets all of the pressure.
@@ -109,9 +88,14 @@ impl Pieces {
         }
     }
 
-    /// The share of the pressure of each piece.
-    pub(super) fn shares<R: Real>(&self, area: &[Row4<R>]) -> Vec<f64> {
-        let mut sums = vec![AreaSums::default(); self.chamber.len()];
+    /// The share of the pressure of each piece, from its `sums`, which are set.
+    pub(super) fn shares<R: Real>(
+        &self,
+        area: &[Row4<R>],
+        sums: &mut Vec<AreaSums>,
+    ) -> impl Iterator<Item = f64> {
+        sums.clear();
+        sums.resize(self.chamber.len(), AreaSums::default());
         for (&piece, area) in self.of_point.iter().zip(area) {
             sums[piece as usize].add(area);
         }
@@ -119,7 +103,7 @@ impl Pieces {
             Some(&closed) if closed > SHEET => (2.0 * sums.closed() / closed - 1.0).clamp(0.0, 1.0),
             _ => 1.0,
         };
-        sums.iter().zip(&self.chamber).map(share).collect()
+        sums.iter().zip(&self.chamber).map(share)
     }
 
     /// The piece of a point.
@@ -151,7 +135,7 @@ mod tests {
             let mut pieces = Pieces::default();
             pieces.start(&[0; 6], &all, 1);
             pieces.find(10, &[0; 6], triangles.iter(), clusters);
-            let shares = pieces.shares(&all);
+            let shares: Vec<f64> = pieces.shares(&all, &mut Vec::new()).collect();
             (
                 (0..6).map(|point| shares[pieces.of(point).expect("a piece")]).collect::<Vec<_>>(),
                 pieces.is_one(0),
