@@ -51,7 +51,7 @@ use crate::particles::free::{advance_free_points, find_free_objects};
 use crate::particles::lifecycle::{age_particles, begin_particles};
 use crate::particles::population::Population;
 use crate::particles::rotation::turn_particles;
-use crate::particles::slowing::slow_particles;
+use crate::particles::slowing::conserve_velocities;
 use crate::report::diagnostics::report;
 use crate::schedule::adaptive::splits;
 use crate::schedule::sweep_direction::alternating_cloths;
@@ -243,7 +243,7 @@ fn end_substep<R: CompiledReal>(
     }
     let has_lost_links = age_particles(solver, frame, schedule, substep, counters);
     damp(&solver.model.cloths, &mut solver.state, frame, alternates, substep_length, &solver.pool);
-    slow_particles(&solver.model.cloths, &mut solver.state, frame, substep_length);
+    conserve_velocities(&solver.model.cloths, &mut solver.state, frame, substep_length);
     let Solver { model, state, contact, links, .. } = solver;
     damp_links(links, (model, &contact.collider_states), state, frame, end);
     if has_broken || has_lost_links {

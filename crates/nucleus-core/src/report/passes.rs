@@ -21,7 +21,7 @@ use crate::math::Real;
 use crate::model::ClothModel;
 use crate::output::PassCost;
 use crate::particles::population::Population;
-use crate::particles::slowing::kept_share;
+use crate::particles::slowing::conserved_share;
 use crate::schedule::sweep_direction::alternating_cloths;
 use crate::schedule::{Effect, Pass, Schedule, WholeEffect};
 use crate::solver::Solver;
@@ -86,7 +86,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         sweeps: if frame.fields_per_substep { f64::from(schedule.substeps) } else { 1.0 },
     });
     let slowed = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
-        !cloth.has_faces && kept_share(settings, 1.0, 1.0) < 1.0
+        !cloth.has_faces && conserved_share(settings, 1.0, 1.0) < 1.0
     };
     let slowed = solver.model.cloths.iter().zip(&frame.cloths).filter(slowed);
     let slowed: usize = slowed.map(|(cloth, _)| cloth.points().len()).sum();

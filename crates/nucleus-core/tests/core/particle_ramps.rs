@@ -1,6 +1,6 @@
 //! Attributes that differ by particle, collision events, and particles that lose speed.
 
-use crate::scenes::{Vec3, frame, ground, still};
+use crate::scenes::{Vec3, frame, ground, physical, still};
 use nucleus_core::{
     Birth, COUNT_PERIOD, Cloth, ClothFrame, ClothId, ClothLists, Collider, CollisionEvent, Elements,
     FrameInput, Mass, ModelBuilder, ParticleChange, ParticleRamp, Particles, PointId, RampInput, RampTarget,
@@ -103,6 +103,53 @@ fn conserve_keeps_its_share_of_the_velocity_in_each_frame_whatever_the_substeps(
         let mut fast = Vec::new();
         solver.velocities(BEADS, 1.0, &mut fast);
         assert!((f64::from(fast[0][0]) / 0.9f64.powi(10) - 1.0).abs() < 1e-5, "{substeps}: {fast:?}");
+    }
+}
+
+/// A particle of 1 m/s that `damp` 0.1 slows, a rate of 2.4/s, after some frames of 1/24 s: its way and its velocity.
+fn damped(substeps: u32, resistance: ResistanceModel, frames: usize, gravity: f64) -> [f64; 2] {
+    let mut cloth = cloth(&[Vec3::zeros()], Particles { capacity: 1, ..Particles::default() });
+    cloth.start.velocities = vec![Vec3::x()];
+    let mut solver = solver(cloth);
+    let settings = ClothFrame { damp: 0.1, collide: false, ..still() };
+    let input = FrameInput {
+        gravity: Vec3::x() * gravity,
+        cloths: vec![settings],
+        duration: 1.0 / 24.0,
+        ..frame(substeps, resistance)
+    };
+    (0..frames).for_each(|_| _ = solver.step(&input, &mut ()));
+    let mut fast = Vec::new();
+    solver.velocities(BEADS, 1.0, &mut fast);
+    [solver.point(BEADS, 0).x, f64::from(fast[0][0])]
+}
+
+#[test]
+fn the_way_of_a_damped_particle_is_its_loss_of_velocity_over_the_rate_whatever_the_substeps() {
+    let rate = 2.4;
+    // Physical, substeps have several time steps.
+    for (substeps, resistance) in [1, 3, 12].into_iter().flat_map(|n| [(n, CLASSIC), (n, physical(96.0))]) {
+        let share = rate / 24.0 / f64::from(substeps);
+        for frames in [6, 24, 240] {
+            let [way, velocity] = damped(substeps, resistance, frames, 0.0);
+            let kept = (1.0 + share).powi(-(frames as i32) * substeps as i32);
+            assert!((velocity - kept).abs() < 1e-5, "{substeps}, {frames}: {velocity}, {kept}");
+            let lost = (1.0 - velocity) / rate;
+            assert!((way / lost - 1.0).abs() < 1e-4, "{substeps}, {frames}: {way}, {lost}");
+            let exact = (1.0 - (-rate * frames as f64 / 24.0).exp()) / rate;
+            // Of a way that is not over yet, the error is that of the implicit velocity.
+            let allowed = if frames == 240 { 1e-4 } else { 0.5 * share };
+            assert!((way / exact - 1.0).abs() < allowed, "{substeps}, {frames}: {way}, {exact}");
+        }
+    }
+}
+
+#[test]
+fn a_damped_particle_falls_at_gravity_over_the_rate_whatever_the_substeps() {
+    for (substeps, resistance) in [1, 3, 12].into_iter().flat_map(|n| [(n, CLASSIC), (n, physical(96.0))]) {
+        let [one, two] = [240, 264].map(|frames| damped(substeps, resistance, frames, 9.8)[0]);
+        let speed = two - one;
+        assert!((speed / (9.8 / 2.4) - 1.0).abs() < 1e-3, "{substeps}: {speed}");
     }
 }
 
