@@ -1,7 +1,7 @@
 //! Prediction at the start of a time step, and velocities at its end.
 //!
-//! Velocities change before points move, and drag and `damp` of particles act before the move: recorded output of the original shows this
-//! order.
+//! Velocities change before points move, and drag acts before the move: recorded output of the original shows this order.
+//! So does `damp` of particles.
 //!
 //! At the end v += (x - p) / h, where p is the predicted displacement, less the motion by which contacts resolve a
 //! penetration. The form v = (x - x_start) / h would take velocity from a difference of rounded positions: a free
@@ -16,7 +16,7 @@ use crate::model::ClothModel;
 use crate::model::strength_maps::AirFactors;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
-use crate::particles::slowing::ParticleDamping;
+use crate::particles::slowing::damped_share;
 use crate::schedule::TimeStep;
 use crate::state::State;
 
@@ -84,10 +84,6 @@ impl<'a, R: Real> Prediction<'a, R> {
     ) -> Self {
         let (TimeStep { frame, schedule, .. }, settings) = (*now, &now.frame.cloths[index]);
         let (h, step) = (schedule.h, f64::from(now.index));
-        let damping = match cloth.has_faces {
-            true => ParticleDamping::OFF,
-            false => ParticleDamping::new(settings, seconds, h * f64::from(schedule.steps)),
-        };
         let steps = [step, step + (seconds / h).round()];
         let gravity = gravity_kick(frame.gravity.into(), h, steps, now.max_speeds[index]);
         let air = AirForces::new(frame, settings, cloth.point_mass, seconds);
@@ -97,9 +93,9 @@ impl<'a, R: Real> Prediction<'a, R> {
             impulse: <[f64; 3]>::from(settings.local_force * seconds).map(R::from_f64),
             air: air.filter(|_| !cloth.triangles.is_empty()),
             air_factors: &[],
-            lost: R::from_f64(damping.lost),
+            damped: R::from_f64(if cloth.has_faces { 0.0 } else { damped_share(settings, seconds) }),
             seconds: R::from_f64(seconds),
-            h: R::from_f64(schedule.h * damping.advance),
+            h: R::from_f64(schedule.h),
         };
         Self { columns, cloth, forces }
     }
@@ -127,11 +123,11 @@ struct ExternalForces<'a, R> {
     air: Option<AirForces>,
     /// Vertex maps of the air, one entry per point of the run; empty where there are none.
     air_factors: &'a [AirFactors],
-    /// The share of the velocity that damping of particles takes.
-    lost: R,
+    /// The share of the velocity that `damp` of particles takes.
+    damped: R,
     /// For how long they act, in seconds.
     seconds: R,
-    /// Seconds of motion at the velocity after the forces: the length of the step, less where particles are damped.
+    /// Length of the step in seconds.
     h: R,
 }
 
@@ -167,7 +163,7 @@ unsafe fn move_points<R: Real>(
     let four = |[x, y, z]: [R; 3]| R::Lanes::from_array([x, y, z, R::ZERO]);
     let (gravity, impulse, zero) = (four(forces.gravity), four(forces.impulse), R::Lanes::splat(R::ZERO));
     let [h, seconds] = [forces.h, forces.seconds].map(|seconds| four([seconds; 3]));
-    let lost = R::Lanes::splat(forces.lost);
+    let damped = R::Lanes::splat(forces.damped);
     let uniform_air = forces.air.map(|air| air.at(&AirFactors::NONE));
     for (k, ((d, v), p)) in displacement.iter_mut().zip(velocity).zip(predicted).enumerate() {
         let x = d.lanes();
@@ -190,7 +186,7 @@ unsafe fn move_points<R: Real>(
             };
             kicked = Row4(slowed).lanes();
         }
-        kicked = inverse_mass.choose_by_sign(kicked - kicked * lost, kicked);
+        kicked = inverse_mass.choose_by_sign(kicked - kicked * damped, kicked);
         let moved = Row4((x + kicked * h).to_array());
         *v = Row4(kicked.to_array());
         *d = moved;

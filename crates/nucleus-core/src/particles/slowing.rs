@@ -1,9 +1,8 @@
 //! Particles lose speed without air: `conserve` keeps a share of the velocity from frame to frame, and `damp` takes it at
 //! a rate, both in all directions and whatever the mass.
 //!
-//! Damping acts before the move, as drag does, and the way of a time step is the loss of velocity over the rate, as in
-//! dv = -k dx: of a single step, that at the velocity after it. So the way of a particle until it rests, and its speed of
-//! fall, are exact for any length of the substeps.
+//! Damping acts before the move in each time step, as drag does: dv = -k dx. So the way of a particle until it rests, and its
+//! speed of fall, are exact for any length of the time step.
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput};
 use crate::math::Real;
@@ -42,27 +41,9 @@ pub fn conserved_share(settings: &ClothFrame, substep: f64, frame: f64) -> f64 {
     if conserve < 1.0 { libm::pow(conserve, substep / frame) } else { 1.0 }
 }
 
-/// The damping of a particle in a time step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ParticleDamping {
-    /// The share of its velocity that it loses: in short steps the share that it keeps would round to a wrong rate.
-    pub lost: f64,
-    /// Its way, relative to that at the velocity after the step.
-    pub advance: f64,
-}
-
-impl ParticleDamping {
-    /// None.
-    pub const OFF: Self = Self { lost: 0.0, advance: 1.0 };
-
-    /// That of some `seconds` of a substep.
-    pub fn new(settings: &ClothFrame, seconds: f64, substep: f64) -> Self {
-        let rate = settings.damp.clamp(0.0, MAX_DAMP) / COUNT_PERIOD;
-        if rate * seconds <= 0.0 {
-            return Self::OFF;
-        }
-        // Over the substep implicit: a velocity shrinks but never changes its sign, however large the rate.
-        let decay = libm::log1p(rate * substep) * seconds / substep;
-        Self { lost: -libm::expm1(-decay), advance: libm::expm1(decay) / (rate * seconds) }
-    }
+/// The share of its velocity that `damp` takes from a particle in a time step of so many seconds. Implicit: a velocity shrinks
+/// but never changes its sign, however large the rate.
+pub fn damped_share(settings: &ClothFrame, seconds: f64) -> f64 {
+    let decay = settings.damp.clamp(0.0, MAX_DAMP) / COUNT_PERIOD * seconds;
+    decay / (1.0 + decay)
 }
