@@ -21,7 +21,8 @@ use crate::constraints::link::glue::{break_links, find_pieces, tear_chambers};
 use crate::constraints::link::pass::{begin_links, form_links, relax_links};
 use crate::constraints::link::surface::slide_links;
 use crate::constraints::link::velocity::{apply_link_forces, damp_links, drag_links};
-use crate::constraints::liquid::{LiquidScene, LiquidSolver};
+use crate::constraints::liquid::LiquidSolver;
+use crate::constraints::liquid::step::LiquidScene;
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
 use crate::contact::cloth::pass::{

@@ -6,7 +6,7 @@
 //! Maya, independent of the step length.
 
 use crate::input::frame::COUNT_PERIOD;
-use crate::math::{Real, add, dot, max, scale, sub};
+use crate::math::{Real, add, dot, max, min, scale, sub};
 use crate::state::State;
 
 /// Speed in m/s at which contact resolves a depth that existed before the step.
@@ -196,11 +196,25 @@ pub struct TouchingPoint<R> {
     pub is_rim: bool,
 }
 
-impl<R: Real> TouchingPoint<R> {
-    /// Whether it counts, given the distance to the `nearest` face of the collider. A point beside an edge of a flat mesh
-    /// touches no slope.
-    pub fn is_of_face(&self, nearest: R) -> bool {
-        !self.is_rim || self.gap <= nearest
+/// Which of the touches of a point with a collider count: those with the inside of a face, else the nearest one. Beside an edge
+/// of a flat mesh the direction to the rim of the next face is no slope that the point hits.
+#[derive(Debug, Clone, Copy)]
+pub struct CountedTouches<R> {
+    has_face: bool,
+    nearest: R,
+}
+
+impl<R: Real> CountedTouches<R> {
+    /// Those of a point, if it has any.
+    pub fn of(touches: impl Iterator<Item = TouchingPoint<R>>) -> Option<Self> {
+        touches
+            .map(|touch| Self { has_face: !touch.is_rim, nearest: touch.gap })
+            .reduce(|a, b| Self { has_face: a.has_face || b.has_face, nearest: min(a.nearest, b.nearest) })
+    }
+
+    /// Whether a touch counts.
+    pub fn contain(&self, touch: &TouchingPoint<R>) -> bool {
+        if self.has_face { !touch.is_rim } else { touch.gap <= self.nearest }
     }
 }
 

@@ -4,11 +4,11 @@
 //! each touching contact the normal speed becomes the coefficient times that before the collision (Müller et al.
 //! 2020, "Detailed rigid body simulation with extended position based dynamics", §3.6).
 
-use crate::contact::response::{Impact, Restitution, TouchingPoint};
+use crate::contact::response::{CountedTouches, Impact, Restitution, TouchingPoint};
 use crate::contact::rigid_impact::{rebound, share_of_impact};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ColliderStepArgs;
-use crate::math::{Real, Row4, min};
+use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::TimeInterval;
 use crate::state::State;
@@ -97,17 +97,16 @@ fn find_touches_of_colliders<R: Real>(
     }
 }
 
-/// Drops the touches of a collider, from `first` on, that are with the rim of a face while another face is nearer.
+/// Drops the touches of a collider, from `first` on, that do not count.
 fn drop_rims<R: Real>(touches: &mut Vec<TouchingPoint<R>>, first: usize) {
     touches[first..].sort_by_key(|touch| touch.row);
-    let mut kept = first;
-    let mut from = first;
+    let (mut kept, mut from) = (first, first);
     while from < touches.len() {
         let row = touches[from].row;
         let end = from + touches[from..].partition_point(|touch| touch.row == row);
-        let least = touches[from..end].iter().fold(touches[from].gap, |least, touch| min(least, touch.gap));
+        let counted = CountedTouches::of(touches[from..end].iter().copied());
         for at in from..end {
-            if touches[at].is_of_face(least) {
+            if counted.is_some_and(|counted| counted.contain(&touches[at])) {
                 touches[kept] = touches[at];
                 kept += 1;
             }

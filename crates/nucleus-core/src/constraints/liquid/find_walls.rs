@@ -8,8 +8,8 @@ use crate::math::Real;
 use crate::model::ClothModel;
 use crate::state::State;
 
+use super::step::{LiquidScene, LiquidStep};
 use super::walls::{Corner, Material, Plane, Walls};
-use super::{LiquidScene, LiquidStep};
 
 /// Least radius in rest distances of the ball of liquid that a particle of another object counts as.
 const MIN_BALL: f32 = 0.05;

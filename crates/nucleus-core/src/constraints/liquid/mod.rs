@@ -27,6 +27,7 @@ pub mod kernel;
 pub mod near;
 pub mod neighbours;
 pub mod pair;
+pub mod step;
 pub mod surface_tension;
 pub mod time_step;
 pub mod viscosity;
@@ -34,8 +35,6 @@ pub mod walls;
 
 use nalgebra::Vector3;
 
-use crate::contact::system::ContactSystem;
-use crate::input::frame::{FrameInput, Liquid};
 use crate::math::Real;
 use crate::model::Model;
 use crate::parallel::disjoint::DisjointSlice;
@@ -45,9 +44,10 @@ use crate::schedule::{StepInterval, TimeStep};
 use crate::state::State;
 
 use density::{Density, Load};
-use excess::{Excess, Recovery};
+use excess::Excess;
 use find_walls::WallSearch;
 use neighbours::{CHUNK, Neighbours, chunk_range};
+use step::{LiquidScene, LiquidStep};
 use time_step::{LiquidInterval, LiquidMotion};
 use viscosity::Viscosity;
 use walls::Walls;
@@ -77,26 +77,6 @@ pub struct LiquidSolver {
     topology: u64,
     /// The time step that it is in; `None` for a cloth that is no liquid.
     interval: Option<LiquidInterval>,
-}
-
-/// One time step of one liquid.
-#[derive(Debug, Clone, Copy)]
-struct LiquidStep {
-    cloth: usize,
-    settings: Liquid,
-    origin: Vector3<f64>,
-    /// Inverse mass of its first particle in 1/kg.
-    inverse_mass: f64,
-    /// Its length in seconds, and how much of it is after the time step of the nucleus in which it starts.
-    h: f64,
-    ahead: f64,
-    span: StepInterval,
-}
-
-impl LiquidStep {
-    fn recovery(&self) -> Recovery {
-        Recovery::new(self.h, self.settings.spacing)
-    }
 }
 
 impl LiquidSolver {
@@ -132,17 +112,6 @@ impl LiquidSolver {
     pub fn density_error(&self) -> f64 {
         self.density_error
     }
-}
-
-/// Inputs of a liquid from the scene.
-#[derive(Clone, Copy)]
-pub struct LiquidScene<'a, R: Real> {
-    /// The objects.
-    pub model: &'a Model<R>,
-    /// Colliders and the ground plane in motion.
-    pub contact: &'a ContactSystem<R>,
-    /// The attributes.
-    pub frame: &'a FrameInput,
 }
 
 impl LiquidSolver {

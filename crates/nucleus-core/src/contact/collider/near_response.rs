@@ -4,9 +4,9 @@ use crate::contact::collider::contact::{Certificate, ColliderContact, Outcome};
 use crate::contact::collider::near_collider::NearCollider;
 use crate::contact::collider::near_points::{NearPoint, NearPoints};
 use crate::contact::collider::sweep::resolve_contacts;
-use crate::contact::response::{Impact, Restitution};
+use crate::contact::response::{CountedTouches, Impact, Restitution};
 use crate::contact::time_step::ColliderStep;
-use crate::math::{Real, Row4, min};
+use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 
 impl<R: Real> NearPoints<R> {
@@ -118,8 +118,8 @@ impl<R: Real> NearPoints<R> {
     ) {
         for place in self.places(at, None) {
             let touches = || self.contacts_of(place).iter().filter_map(|contact| contact.touch(step, frame));
-            let Some(nearest) = touches().map(|touch| touch.gap).reduce(min) else { continue };
-            for touch in touches().filter(|touch| touch.is_of_face(nearest)) {
+            let Some(counted) = CountedTouches::of(touches()) else { continue };
+            for touch in touches().filter(|touch| counted.contain(touch)) {
                 let row = step.row(touch.row);
                 if touch.coefficient <= R::ZERO || row.0[3] <= R::ZERO {
                     continue;

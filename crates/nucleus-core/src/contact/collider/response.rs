@@ -1,13 +1,11 @@
 //! Response of one contact with a collider: push, friction, adhesion, and the surface for restitution.
 
-use nalgebra::Vector3;
-
 use crate::contact::collider::contact::{
     ColliderContact, Outcome, Point, closest, cross_direction, interpolate,
 };
 use crate::contact::collider::separation::{best_plane, separated};
-use crate::contact::depenetration::unit_normal;
 use crate::contact::material::{ContactMaterial, ContactPoints};
+use crate::contact::narrow_phase::shortest_line;
 use crate::contact::response::{
     Adhesion, Mobility, Push, Restitution, TOUCH_TOLERANCE, TouchingPoint, coulomb_correction,
 };
@@ -242,26 +240,30 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     }
 }
 
-/// Least cosine of the angle between the normal of a contact and that of its face: below it, the contact is with the rim.
-const FACE_NORMAL: f64 = 1.0 - 1e-6;
+/// Share of a corner of a face up to which a contact is with the rim opposite to it.
+const RIM: f64 = 1e-6;
 
 impl<R: Real> ColliderContact<R, 1, 3> {
     /// What the point touches at the end of the step, if the two touch; `frame` is the length of the frame in seconds.
+    ///
+    /// The plane of the contact only tells that they may touch: it may be from a time at which the point was beside the face.
     pub fn touch(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<TouchingPoint<R>> {
-        let moved = step.displacements(self.points);
-        let (gap, _) = self.gaps(moved, step.shares[1]);
-        if !Restitution::touches(gap, self.rest_gap(step, self.weights)) {
+        let (along, _) = self.gaps(step.displacements(self.points), step.shares[1]);
+        let rest_gap = self.rest_gap(step, self.weights);
+        if !Restitution::touches(along, rest_gap) {
             return None;
         }
+        let place: [f64; 3] = step.end_position(self.points[0]).into();
         let [_, corners] = step.collider_positions(self.collider_points);
-        let along = unit_normal(corners).dot(&Vector3::from(self.normal.map(R::to_f64)));
-        Some(TouchingPoint {
+        let (normal, (_, weights), distance) = shortest_line::<f64, 1, 3>(([place], corners.map(Into::into)));
+        let gap = R::from_f64(distance);
+        Restitution::touches(gap, rest_gap).then(|| TouchingPoint {
             row: self.points[0],
-            normal: self.normal,
+            normal: normal.map(R::from_f64),
             surface: self.surface_motion.map(|x| x / R::from_f64(frame)),
             coefficient: self.bounce(step),
             gap,
-            is_rim: along.abs() < FACE_NORMAL,
+            is_rim: weights.iter().any(|&weight| weight <= RIM),
         })
     }
 }
