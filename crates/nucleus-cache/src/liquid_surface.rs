@@ -27,6 +27,8 @@ const MAX_CELLS: f32 = 1e9;
 /// Cells along the side of a block, a quarter of the diameter that a particle reaches: larger blocks store more that none
 /// reaches, smaller ones are more to look up.
 const SIDE: i32 = 4;
+/// Recorded times at which the spacing of particles is measured, about.
+const PROBES: usize = 8;
 /// Corners of a block.
 const CORNERS: usize = (SIDE * SIDE * SIDE) as usize;
 /// A cell that the surface does not pass.
@@ -59,22 +61,31 @@ impl<R: Read + Seek> Playback<R> {
         self.objects().get(object).ok_or(ReadError::NoObject { object, objects })
     }
 
-    /// The spacing of an object's particles in scene units: the median distance to the nearest other, at the first recorded
-    /// time that has several. `None` for other objects.
+    /// The spacing of an object's particles in scene units: the recorded rest distance of a liquid, else the median distance
+    /// to the nearest other where they are most, among some recorded times. `None` for other objects.
     ///
     /// # Errors
     /// If there is no such object, or a frame is damaged.
     pub fn particle_spacing(&mut self, object: usize) -> Result<Option<f32>, ReadError> {
-        if self.object(object)?.kind != ObjectKind::Particles {
+        let ObjectInfo { kind, name, .. } = self.object(object)?;
+        if *kind != ObjectKind::Particles {
             return Ok(None);
         }
-        for sample in 0..self.time_samples().len() {
-            let found = spacing(&self.positions(object, sample)?);
-            if found.is_some() {
-                return Ok(found);
+        if let Some(&distance) = self.run().rest_distances.get(name).filter(|distance| **distance > 0.0) {
+            return Ok(Some(distance as f32));
+        }
+        // The first particles of an emitter are few and overlap, so their distance says nothing.
+        let samples = self.time_samples().len();
+        let (mut most, mut found) = (0, None);
+        for sample in (0..samples).step_by((samples / PROBES).max(1)) {
+            let particles = self.positions(object, sample)?;
+            if particles.len() > most
+                && let Some(spacing) = spacing(&particles)
+            {
+                (most, found) = (particles.len(), Some(spacing));
             }
         }
-        Ok(None)
+        Ok(found)
     }
 }
 

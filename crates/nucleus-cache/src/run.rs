@@ -88,6 +88,8 @@ pub struct RunInfo {
     pub ground_motion: Vec<Plane>,
     /// Particle radius of each particle object, by object name, in scene units.
     pub radii: BTreeMap<String, f64>,
+    /// Distance of the particles of each liquid at rest, by object name, in scene units.
+    pub rest_distances: BTreeMap<String, f64>,
     /// The shape of the surface of each particle object that states one, by object name.
     pub surfaces: BTreeMap<String, SurfaceShape>,
     /// Cameras of the scene; the first is the default for pictures.
@@ -141,6 +143,7 @@ impl Default for RunInfo {
             ground: None,
             ground_motion: Vec::new(),
             radii: BTreeMap::new(),
+            rest_distances: BTreeMap::new(),
             surfaces: BTreeMap::new(),
             cameras: Vec::new(),
             texture_coordinates: BTreeMap::new(),

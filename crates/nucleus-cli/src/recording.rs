@@ -116,6 +116,11 @@ pub fn of_scene<R: Real>(simulation: &Simulation<R>, scene: (&Path, &str)) -> Re
         ground_motion,
         selections: program.nuclei().iter().flat_map(NucleusProgram::selections).map(selected).collect(),
         radii: simulation.objects().iter().filter_map(|o| Some((o.name.clone(), o.radius?))).collect(),
+        rest_distances: simulation
+            .objects()
+            .iter()
+            .filter_map(|o| Some((o.name.clone(), o.rest_distance?)))
+            .collect(),
         surfaces: simulation.objects().iter().filter_map(surface).collect(),
         looks: program.has_looks(),
         rotation: program.has_rotation(),

@@ -384,6 +384,7 @@ mod tests {
             faces: Faces::default(),
             radius: None,
             surface: [0.1, 1.0],
+            rest_distance: None,
             varies: false,
         };
         let objects = [

@@ -16,6 +16,11 @@ const GREEN: [f32; 3] = [0.0, 1.0, 0.0];
 
 /// Writes a cache of one frame: a cube of particles about the origin, whose balls leave gaps.
 fn write(path: &Path) {
+    write_with(path, None);
+}
+
+/// The same, of a liquid with this distance at rest.
+fn write_with(path: &Path, rest_distance: Option<f64>) {
     let at = |k: u32| (k as f32 - 0.5 * (SIDE - 1) as f32) * SPACING;
     let place = |k: u32| [at(k % SIDE), at(k / SIDE % SIDE), at(k / (SIDE * SIDE))];
     let rest: Vec<[f32; 3]> = (0..SIDE.pow(3)).map(place).collect();
@@ -26,7 +31,8 @@ fn write(path: &Path) {
     let (name, kind) = ("wa/ter".to_owned(), ObjectKind::Particles);
     let radii = BTreeMap::from([(name.clone(), f64::from(0.15 * SPACING))]);
     let object = ObjectInfo { name, kind, faces: Faces::default(), rest };
-    let run = RunInfo { radii, ..RunInfo::default() };
+    let rest_distances = rest_distance.map(|distance| (object.name.clone(), distance)).into_iter().collect();
+    let run = RunInfo { radii, rest_distances, ..RunInfo::default() };
     let mut recorder = Recorder::create(path, &run, vec![(Source::Cloth(cloth), object)]).unwrap();
     recorder.record_start(&Solver::<f32>::new(builder, 1)).unwrap();
     recorder.finish().unwrap();
@@ -56,6 +62,16 @@ fn a_surface_closes_the_gaps_between_particles() {
     assert!((spacing / SPACING - 1.0).abs() < 1e-3, "{spacing}");
     assert!(gaps(&picture(&mut cache, false)) > 20, "one looks through between balls");
     assert_eq!(gaps(&picture(&mut cache, true)), 0);
+}
+
+#[test]
+fn the_surface_of_a_liquid_has_the_spacing_of_its_rest_distance() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    // Its particles are nearer than at rest, as those that an emitter has just made.
+    write_with(&path, Some(1.5 * f64::from(SPACING)));
+    let spacing = Playback::open(&path).unwrap().particle_spacing(0).unwrap().unwrap();
+    assert!((spacing / SPACING - 1.5).abs() < 1e-3, "{spacing}");
 }
 
 fn get(address: SocketAddr, path: &str) -> (String, Vec<u8>) {

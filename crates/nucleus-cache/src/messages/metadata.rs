@@ -30,6 +30,8 @@ const GROUND: &str = "ground";
 const GROUND_MOTION: &str = "ground motion";
 /// Prefix of the key for the particle radius of an object; the object's name follows.
 const RADIUS: &str = "radius of ";
+/// Prefix of the key for the distance of the particles of a liquid at rest; the object's name follows.
+const REST_DISTANCE: &str = "rest distance of ";
 /// Prefix of the key for threshold and radius scale of the surface of an object; the object's name follows.
 const SURFACE: &str = "surface of ";
 const CHECKPOINT: &str = "checkpoint";
@@ -66,7 +68,7 @@ const RESERVED: [&str; 20] = [
 fn is_reserved(key: &str) -> bool {
     RESERVED.contains(&key)
         || key == CHECKSUM
-        || [RADIUS, SURFACE].iter().any(|prefix| key.starts_with(prefix))
+        || [RADIUS, REST_DISTANCE, SURFACE].iter().any(|prefix| key.starts_with(prefix))
 }
 
 impl RunInfo {
@@ -108,7 +110,9 @@ impl RunInfo {
             run.insert(FURTHER_RECORDS.to_owned(), further.join(" "));
         }
         // Keys with default values are left out.
-        run.extend(self.radii.iter().map(|(name, radius)| (format!("{RADIUS}{name}"), radius.to_string())));
+        for (prefix, lengths) in [(RADIUS, &self.radii), (REST_DISTANCE, &self.rest_distances)] {
+            run.extend(lengths.iter().map(|(name, length)| (format!("{prefix}{name}"), length.to_string())));
+        }
         run.extend(self.surfaces.iter().map(|(name, shape)| {
             (format!("{SURFACE}{name}"), format!("{} {}", shape.threshold, shape.radius_scale))
         }));
@@ -191,7 +195,8 @@ impl RunInfo {
             particles: run.flag(PARTICLES.topic),
             ground: run.ground()?,
             ground_motion: run.ground_motion()?,
-            radii: run.radii()?,
+            radii: run.lengths(RADIUS)?,
+            rest_distances: run.lengths(REST_DISTANCE)?,
             surfaces: run.surfaces()?,
             cameras,
             texture_coordinates,
@@ -299,20 +304,20 @@ impl Keys {
         Ok(surfaces)
     }
 
-    /// The particle radii; removes their keys.
-    fn radii(&mut self) -> Result<BTreeMap<String, f64>, OpenError> {
-        let keys: Vec<String> = self.0.keys().filter(|key| key.starts_with(RADIUS)).cloned().collect();
-        let mut radii = BTreeMap::new();
+    /// The lengths by object whose keys begin with a prefix; removes their keys.
+    fn lengths(&mut self, prefix: &'static str) -> Result<BTreeMap<String, f64>, OpenError> {
+        let keys: Vec<String> = self.0.keys().filter(|key| key.starts_with(prefix)).cloned().collect();
+        let mut lengths = BTreeMap::new();
         for key in keys {
             let text = self.0.remove(&key).unwrap_or_default();
             match text.parse::<f64>() {
-                Ok(radius) if radius >= 0.0 && radius.is_finite() => {
-                    radii.insert(key[RADIUS.len()..].to_owned(), radius)
+                Ok(length) if length >= 0.0 && length.is_finite() => {
+                    lengths.insert(key[prefix.len()..].to_owned(), length)
                 }
-                _ => return Err(OpenError::BadValue { key: "radius of", value: text }),
+                _ => return Err(OpenError::BadValue { key: prefix.trim_end(), value: text }),
             };
         }
-        Ok(radii)
+        Ok(lengths)
     }
 
     /// Six numbers: a point and the normal.
@@ -364,6 +369,7 @@ mod tests {
             ground_motion: ground.into_iter().chain([raised]).collect(),
             contacts: true,
             radii: BTreeMap::from([("beads of glass".to_owned(), 0.1)]),
+            rest_distances: BTreeMap::from([("water".to_owned(), 0.16)]),
             surfaces: BTreeMap::from([(
                 "beads of glass".to_owned(),
                 SurfaceShape { threshold: 0.7, radius_scale: 1.5 },

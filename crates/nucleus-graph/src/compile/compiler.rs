@@ -182,6 +182,7 @@ impl<'a> Compiler<'a> {
             faces,
             radius: None,
             surface: [0.1, 1.0],
+            rest_distance: None,
             varies: false,
         });
     }

@@ -55,7 +55,7 @@ pub(super) fn ever_self_collides(graph: &Graph, node: NodeId) -> bool {
     graph.is_ever_nonzero(node, &n_base::SELF_COLLIDE) && (is_given || !is_always_liquid())
 }
 
-fn is_liquid(at: &EvalContext<'_>, node: NodeId) -> bool {
+pub(super) fn is_liquid(at: &EvalContext<'_>, node: NodeId) -> bool {
     let has_it = at.graph().node(node).node_type().attribute(n_particle::ENABLE_SPH.row.name).is_some();
     has_it && at.get(node, &n_particle::ENABLE_SPH)
 }

@@ -13,7 +13,7 @@ use crate::memory::{Cost, Size};
 use super::compiler::Compiler;
 use super::emission::{Lifespan, dies};
 use super::initial_state::PlacedObject;
-use super::liquids::{contact_radius, ever_self_collides, self_collides};
+use super::liquids::{contact_radius, ever_self_collides, is_liquid, rest_distance, self_collides};
 use super::particle_ramps::{EVENT_ROOM, is_event_target};
 use super::program::{EvaluationInterval, ObjectKind};
 use super::sources::{ClothSource, Emitter, MapScales, RecordedPoints};
@@ -73,8 +73,10 @@ impl Compiler<'_> {
                 let radius = self.start.get(id, &n_particle::RADIUS);
                 let surface = [&n_particle::THRESHOLD, &n_particle::BLOBBY_RADIUS_SCALE];
                 let surface = surface.map(|key| self.start.get(id, key));
+                let rest_distance = is_liquid(&self.start, id).then(|| rest_distance(&self.start, id));
                 if let Some(object) = self.objects.last_mut() {
                     (object.radius, object.surface, object.varies) = (Some(radius), surface, varies);
+                    object.rest_distance = rest_distance;
                 }
             }
             Err(error) => return self.report_refused(id, id, &error),

@@ -79,6 +79,8 @@ pub struct Object {
     pub radius: Option<f64>,
     /// `threshold` and `blobbyRadiusScale` of the surface of its particles.
     pub surface: [f64; 2],
+    /// Distance of its particles at rest in scene units, if it is a liquid.
+    pub rest_distance: Option<f64>,
     /// Whether its points are particles that are born and die; `points` is then their number at the start.
     pub varies: bool,
 }
