@@ -1,8 +1,8 @@
-//! Files of values for points and textures, which a scene names relative to its own folder.
+//! Files of values for points, textures and recorded positions, which a scene names relative to its own folder.
 
 use std::path::{Component, Path, PathBuf};
 
-use nucleus_graph::attributes::{Attribute, Painting, Value};
+use nucleus_graph::attributes::{Attribute, Painting, Value, n_base};
 use nucleus_graph::graph::{Graph, NodeId, Setting};
 
 /// A scene that moves to another folder.
@@ -29,7 +29,7 @@ impl Move {
     }
 }
 
-/// Renames the files of values and the textures that exist in the old folder of a scene alone, so that it names them from
+/// Renames the files of values, textures and recorded positions that exist in the old folder of a scene alone, so that it names them from
 /// its new folder. Returns the node, the attribute and the path of those that are in neither.
 pub fn follow(graph: &mut Graph, how: &Move) -> Vec<(String, String)> {
     let mut missing = Vec::new();
@@ -52,7 +52,38 @@ pub fn follow(graph: &mut Graph, how: &Move) -> Vec<(String, String)> {
         // A path fits wherever one was.
         let _ = graph.set(id, row, Setting::Fixed(Value::Painting(moved)));
     }
+    follow_caches(graph, how);
     missing
+}
+
+/// The same for `cacheFile`, whose `####` stands for the frame.
+fn follow_caches(graph: &mut Graph, how: &Move) {
+    let path = |(id, node): (NodeId, &nucleus_graph::graph::Node)| match node.setting(&n_base::CACHE_FILE) {
+        Some(Setting::Fixed(Value::Text(path))) => Some((id, path.clone())),
+        _ => None,
+    };
+    let paths: Vec<(NodeId, String)> = graph.iter().filter_map(path).collect();
+    for (id, path) in paths {
+        let is_elsewhere = !Path::new(&path).is_absolute() && !has_frames(&how.to.join(&path));
+        if is_elsewhere && has_frames(&how.from.join(&path)) {
+            // A path fits wherever one was.
+            let moved = Setting::Fixed(Value::Text(how.path(&path)));
+            let _ = graph.set(id, &n_base::CACHE_FILE.row, moved);
+        }
+    }
+}
+
+/// Whether there is a file of any frame of a numbered file.
+fn has_frames(file: &Path) -> bool {
+    let name = file.file_name().and_then(|name| name.to_str());
+    let Some((before, rest)) = name.and_then(|name| name.split_once('#')) else { return file.is_file() };
+    let after = rest.trim_start_matches('#');
+    let is_frame = |name: &str| {
+        let number = name.strip_prefix(before).and_then(|name| name.strip_suffix(after));
+        number.is_some_and(|number| number.parse::<i64>().is_ok())
+    };
+    let entries = file.parent().and_then(|folder| folder.read_dir().ok());
+    entries.into_iter().flatten().flatten().any(|entry| entry.file_name().to_str().is_some_and(is_frame))
 }
 
 /// The attributes whose values come from a file.
@@ -109,6 +140,18 @@ fn plain(path: &Path) -> Vec<Component<'_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_frames_of_a_cache_are_found_under_its_name_with_numbers() {
+        let folder = tempfile::tempdir().unwrap();
+        let sequence = folder.path().join("points/c.####.obj");
+        assert!(!has_frames(&sequence));
+        std::fs::create_dir(folder.path().join("points")).unwrap();
+        std::fs::write(folder.path().join("points/c.rest.obj"), "").unwrap();
+        assert!(!has_frames(&sequence));
+        std::fs::write(folder.path().join("points/c.0012.obj"), "").unwrap();
+        assert!(has_frames(&sequence));
+    }
 
     #[test]
     fn a_path_leads_from_a_folder_to_a_file() {

@@ -139,3 +139,24 @@ fn files_of_values_are_found_from_the_folder_of_an_exported_and_of_an_imported_s
     let said = stdout(&lost);
     assert!(said.contains("`p.position0`: `../../meshes/beads.obj` is neither beside"), "{said}");
 }
+
+#[test]
+fn the_recorded_positions_of_a_scene_are_found_from_the_folder_of_its_maya_scene() {
+    let folder = folder();
+    for part in ["scene/points", "maya"] {
+        fs::create_dir_all(folder.path().join(part)).unwrap();
+    }
+    for frame in 1..=3 {
+        let file = folder.path().join(format!("scene/points/p.{frame:04}.obj"));
+        fs::write(file, format!("v {frame} 0 0\n")).unwrap();
+    }
+    let text = r#"Scene(time: (start: 1, end: 3, fps: 24), nodes: { "n": nucleus(),
+        "p": nParticle(position0: [(1, 0, 0)], playFromCache: true, cacheFile: "points/p.####.obj")})"#;
+    fs::write(folder.path().join("scene/p.ron"), text).unwrap();
+    let output = nucleus(folder.path(), &["export", "scene/p.ron", "--as=ma", "-o", "maya/p.ma"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let written = read(folder.path(), "maya/p.ma");
+    assert!(written.contains("../scene/points/p.####.obj"), "{written}");
+    let output = nucleus(folder.path(), &["run", "maya/p.ma", "-o", "again.mcap"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
