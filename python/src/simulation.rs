@@ -52,6 +52,10 @@ struct Watch {
 impl StepObserver for Watch {
     fn substep(&mut self, _: SubstepIndex, _: &dyn StateView) {}
 
+    fn observes_substeps(&self) -> bool {
+        false
+    }
+
     fn should_continue(&self) -> ControlFlow<()> {
         if self.looked.get().elapsed() < SIGNALS_EVERY {
             return ControlFlow::Continue(());

@@ -244,6 +244,10 @@ impl StepObserver for StopOnSignal<'_> {
         self.0.step(share, state);
     }
 
+    fn observes_substeps(&self) -> bool {
+        self.0.observes_substeps()
+    }
+
     fn should_continue(&self) -> ControlFlow<()> {
         if process::is_interrupted() { ControlFlow::Break(()) } else { self.0.should_continue() }
     }

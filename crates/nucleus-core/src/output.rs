@@ -133,6 +133,12 @@ pub trait StepObserver {
         let _ = (share, state);
     }
 
+    /// Whether it needs the substeps before the last of a frame. Several solvers of a scene keep their states for one
+    /// that does, to show them in the order of time.
+    fn observes_substeps(&self) -> bool {
+        true
+    }
+
     /// Called before each pass of a time step: `Break` ends the frame there. Its report is then `stopped`, and the
     /// state is in the middle of a time step: to continue, restore a checkpoint from before the frame.
     fn should_continue(&self) -> ControlFlow<()> {
@@ -171,6 +177,10 @@ pub enum Stage {
 
 impl StepObserver for () {
     fn substep(&mut self, _index: SubstepIndex, _state: &dyn StateView) {}
+
+    fn observes_substeps(&self) -> bool {
+        false
+    }
 }
 
 /// The report of one frame: counters over the frame, and worst values at its end.

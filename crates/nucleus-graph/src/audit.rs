@@ -179,6 +179,10 @@ impl StepObserver for Audited<'_> {
         self.watch.step(share, state);
     }
 
+    fn observes_substeps(&self) -> bool {
+        self.watch.observes_substeps()
+    }
+
     fn should_continue(&self) -> ControlFlow<()> {
         self.watch.should_continue()
     }

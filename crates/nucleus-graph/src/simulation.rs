@@ -16,12 +16,14 @@ use crate::scene::TimeSpan;
 
 use combined::{CombinedObserver, CombinedState, combined_report, with_evaluation};
 use nucleus_run::{NucleusRun, SolverCall};
+use substep_merge::{SubstepMerge, WithoutSubsteps};
 
 mod combined;
 mod nucleus_run;
+mod substep_merge;
 
 /// Identifies the layout of a checkpoint; the number increases whenever the layout changes.
-const CHECKPOINT_KIND: [u8; 8] = *b"nuclei 2";
+const CHECKPOINT_KIND: [u8; 8] = *b"nuclei 3";
 
 /// A run of a program, at one of its frames.
 ///
@@ -84,36 +86,62 @@ impl<R: Real> Simulation<R> {
         change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
         watch: &mut dyn StepObserver,
     ) -> FrameReport {
+        if self.runs.len() == 1 || !watch.observes_substeps() {
+            return self.advance_merged(change, watch, None);
+        }
+        let start = self.runs.iter().map(|run| &run.solver as &dyn StateView);
+        let intervals = self.evaluation_times(self.next_frame()).len() as u32;
+        let merge = RefCell::new(SubstepMerge::new(&self.program, start, intervals));
+        let report = self.advance_merged(change, &mut WithoutSubsteps(watch), Some(&merge));
+        if !report.report.stopped {
+            let ends = self.runs.iter().map(|run| (&run.solver as &dyn StateView, run.rate));
+            let ends: Vec<_> = ends.collect();
+            merge.borrow().show(&self.program, &ends, watch);
+        }
+        report
+    }
+
+    /// Solves the next frame; `merge` keeps the substeps of several nuclei.
+    fn advance_merged(
+        &mut self,
+        change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
+        watch: &mut dyn StepObserver,
+        merge: Option<&RefCell<SubstepMerge>>,
+    ) -> FrameReport {
         let frame = self.next_frame();
         let Some(mut audit) = self.audit.take() else {
-            let report = self.solve(frame, change, watch, &RefCell::default());
+            let planes = RefCell::default();
+            let report = self.solve(frame, change, Watches { watch, planes: &planes, merge });
             return FrameReport { frame, report, passed_through: None };
         };
         let scope = self.next_scope();
         audit.begin_frame(frame, |world| collision_rules(&self.program, frame, &scope, world));
         let before = audit.account().found();
         let planes = RefCell::new(audit.take_planes());
-        let report = self.solve(frame, change, &mut Audited::new(&mut audit, &planes, watch), &planes);
+        let mut audited = Audited::new(&mut audit, &planes, watch);
+        let report = self.solve(frame, change, Watches { watch: &mut audited, planes: &planes, merge });
         audit.keep_planes(planes.into_inner());
         let passed_through = Some(audit.account().found() - before);
         self.audit = Some(audit);
         FrameReport { frame, report, passed_through }
     }
 
-    /// Solves all nuclei up to a frame, and records the motion of their ground planes in `planes`.
+    /// Solves all nuclei up to a frame.
     fn solve(
         &mut self,
         frame: i64,
         change: &mut dyn FnMut(&Solver<R>, &mut FrameInput),
-        watch: &mut dyn StepObserver,
-        planes: &RefCell<GroundPlanes>,
+        Watches { watch, planes, merge }: Watches<'_>,
     ) -> StepReport {
         let calls = self.schedule(frame);
+        if let Some(merge) = merge {
+            merge.borrow_mut().schedule(&calls);
+        }
         let total = calls.iter().map(|call| call.substeps).sum();
         let mut done = 0;
         let mut report: Option<StepReport> = None;
         for call in calls {
-            let observers = &mut Observers { watch: &mut *watch, planes, done, total };
+            let observers = &mut Observers { watch: &mut *watch, planes, merge, done, total };
             let own = self.call_solver(&call, change, observers);
             if own.stopped {
                 return own;
@@ -131,12 +159,12 @@ impl<R: Real> Simulation<R> {
     /// The solver calls up to a frame, in the order of time, then of nuclei.
     fn schedule(&mut self, frame: i64) -> Vec<SolverCall> {
         let mut calls: Vec<SolverCall> = Vec::new();
-        for time in self.evaluation_times(frame) {
+        for (interval, time) in (0..).zip(self.evaluation_times(frame)) {
             let first = calls.len();
             for (nucleus, run) in self.runs.iter_mut().enumerate() {
                 let call = run.evaluate(&self.program, nucleus, time);
                 let is_new_time = calls.len() == first;
-                calls.extend(call.map(|call| SolverCall { is_new_time, ..call }));
+                calls.extend(call.map(|call| SolverCall { is_new_time, interval, ..call }));
             }
         }
         calls
@@ -179,15 +207,22 @@ impl<R: Real> Simulation<R> {
             report
         };
         change(&run.solver, &mut input);
+        run.rate = input.duration / ((call.frames[1] - call.frames[0]) / self.program.time().fps);
         let first_cloth = self.program.nuclei()[call.nucleus].cloths().start;
         let span = [observers.done, observers.done + call.substeps];
         let span = span.map(|substep| f64::from(substep) / f64::from(observers.total.max(1)));
         observers.planes.borrow_mut().begin_span(call.nucleus, first_cloth, &input, span);
-        if before.is_empty() && after.is_empty() && observers.total == call.substeps {
+        let is_alone = before.is_empty() && after.is_empty() && observers.total == call.substeps;
+        if is_alone && run.rate == 1.0 {
             return complete(run.solver.step(&input, observers.watch));
         }
         let others = before.iter().map(|run| &run.solver as &dyn StateView);
         let others: Vec<&dyn StateView> = others.chain(after.iter().map(|run| &run.solver as _)).collect();
+        let rates =
+            before.iter().map(|run| run.rate).chain([run.rate]).chain(after.iter().map(|run| run.rate));
+        if let Some(merge) = observers.merge {
+            merge.borrow_mut().begin(call);
+        }
         let mut combined = CombinedObserver {
             watch: &mut *observers.watch,
             done: observers.done,
@@ -195,6 +230,8 @@ impl<R: Real> Simulation<R> {
             total: observers.total,
             nucleus: call.nucleus,
             others,
+            rates: rates.collect(),
+            merge: observers.merge,
             program: &self.program,
         };
         complete(run.solver.step(&input, &mut combined))
@@ -228,10 +265,10 @@ impl<R: Real> Simulation<R> {
         self.program.units_per_metre()
     }
 
-    /// The current state of all objects.
+    /// The current state of all objects. Velocities are per second of the scene.
     pub fn state(&self) -> &dyn StateView {
         match self.runs.as_slice() {
-            [only] => &only.solver,
+            [only] if only.rate == 1.0 => &only.solver,
             _ => self,
         }
     }
@@ -280,14 +317,25 @@ impl<R: Real> Simulation<R> {
 
     fn combined(&self) -> CombinedState<'_> {
         let parts = self.runs.iter().map(|run| &run.solver as &dyn StateView).collect();
-        CombinedState { program: &self.program, parts, solving: None }
+        let rates = self.runs.iter().map(|run| run.rate).collect();
+        CombinedState { program: &self.program, parts, rates, solving: None }
     }
+}
+
+/// What sees the states of a frame.
+struct Watches<'a> {
+    watch: &'a mut dyn StepObserver,
+    /// The motion of the ground planes in the frame, for the audit.
+    planes: &'a RefCell<GroundPlanes>,
+    /// The substeps of several nuclei, where they are merged by time.
+    merge: Option<&'a RefCell<SubstepMerge>>,
 }
 
 /// The observers of a frame, and its progress in substeps.
 struct Observers<'a> {
     watch: &'a mut dyn StepObserver,
     planes: &'a RefCell<GroundPlanes>,
+    merge: Option<&'a RefCell<SubstepMerge>>,
     done: u32,
     total: u32,
 }

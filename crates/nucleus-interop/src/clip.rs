@@ -3,7 +3,7 @@
 use std::io::{Read, Seek};
 
 use nucleus_cache::{
-    Camera, CameraView, LiquidSurface, ObjectInfo, ObjectKind, Playback, TextureCoordinates,
+    Camera, CameraView, LiquidSurface, ObjectInfo, ObjectKind, Playback, RunInfo, TextureCoordinates,
 };
 use nucleus_core::{Particle, ParticleLook};
 
@@ -371,10 +371,38 @@ fn samples<R: Read + Seek>(cache: &Playback<R>, selection: &Selection) -> Result
                 false => (moment.substep, moment.substeps),
             };
             let interval = f64::from(cache.run().interval_before(moment.frame));
-            let share = f64::from(substep) / f64::from(substeps);
+            let share = match moment.ends_frame() {
+                true => 1.0,
+                false => share_of_frame(cache.run(), moment.frame, moment.time, [substep, substeps]),
+            };
             let frame_time = f64::from(moment.frame) - interval + interval * share;
             Sample { frame: moment.frame, substep, substeps, frame_time, moment: index }
         })
         .collect();
     if samples.is_empty() { Err(ExportError::NoFrame { first, last, has }) } else { Ok(samples) }
+}
+
+/// The share of its frame at which a sample within it lies. Times are whole nanoseconds, so it is rounded to the substeps.
+fn share_of_frame(run: &RunInfo, frame: i32, time: f64, [substep, substeps]: [u32; 2]) -> f64 {
+    let interval = f64::from(run.interval_before(frame));
+    let before = f64::from(frame) - interval - f64::from(run.start);
+    let share = (time * run.frames_per_second - before) / interval;
+    let even = f64::from(substep) / f64::from(substeps);
+    let rounding = 2e-9 * run.frames_per_second;
+    if (share - even).abs() < rounding { even } else { (share * 1e6).round() / 1e6 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_within_a_frame_have_their_own_times() {
+        let run = RunInfo { start: 1, end: 9, frames_per_second: 24.0, ..RunInfo::default() };
+        // Three and five substeps in a frame.
+        for (substep, share) in (1..).zip([0.2, 1.0 / 3.0, 0.4, 0.6, 2.0 / 3.0, 0.8]) {
+            let time = ((1.0 + share) / 24.0 * 1e9_f64).round() * 1e-9;
+            assert!((share_of_frame(&run, 3, time, [substep, 7]) - share).abs() < 1e-6);
+        }
+    }
 }

@@ -122,6 +122,10 @@ impl StageClock {
 impl StepObserver for StageClock {
     fn substep(&mut self, _moment: SubstepIndex, _state: &dyn StateView) {}
 
+    fn observes_substeps(&self) -> bool {
+        false
+    }
+
     fn enter(&mut self, stage: Stage) {
         self.switch(Some(stage), Instant::now());
     }

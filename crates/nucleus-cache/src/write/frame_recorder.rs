@@ -36,6 +36,10 @@ impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
         }
         self.recorder.deferred_error = self.recorder.record(self.recorder.stamp(index), state).err();
     }
+
+    fn observes_substeps(&self) -> bool {
+        self.recorder.run.detail == Detail::Substeps
+    }
 }
 
 impl<W: Write + Seek> FrameRecorder<'_, W> {

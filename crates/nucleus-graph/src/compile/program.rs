@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nucleus_core::{Cloth, ClothId, ColliderId, Faces, InvalidInput, ModelBuilder, RampTarget};
 
-use crate::attributes::{ElementKind, FromValue, Key};
+use crate::attributes::{ElementKind, FromValue, Key, nucleus};
 use crate::checks::Check;
 use crate::diagnostic::Diagnostic;
 use crate::graph::{EvalContext, Graph, NodeId};
@@ -287,6 +287,19 @@ impl Program {
         let seconds = elapsed / fps;
         let is_first = frames[0] <= nucleus.start as f64;
         EvaluationInterval { nucleus, graph, from, to, seconds, fps, budget, is_first, is_discontinuous }
+    }
+
+    /// Solver seconds of a nucleus per second of the scene, on the average between two frames of the scene.
+    pub fn time_rate(&self, nucleus: usize, [from, to]: [f64; 2]) -> f64 {
+        let (node, graph) = (self.nuclei()[nucleus].node(), self.graph());
+        let [before, now] = [from, to].map(|frame| graph.at(frame).get(node, &nucleus::CURRENT_TIME));
+        let rate = graph.at(to).get(node, &nucleus::TIME_SCALE) * ((now - before) / (to - from));
+        rate.max(0.0)
+    }
+
+    /// The index of the nucleus that solves a cloth.
+    pub fn nucleus_of(&self, cloth: ClothId) -> usize {
+        self.locate_cloth(cloth).0
     }
 
     /// The nucleus of a cloth, by its index, and the id of the cloth in that nucleus.

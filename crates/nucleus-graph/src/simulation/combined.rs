@@ -1,5 +1,6 @@
-//! Several nuclei presented as one: their states, the observer of their substeps, and their reports.
+//! Nuclei presented as one, in the time of the scene: their states, the observer of their substeps, and their reports.
 
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
@@ -10,11 +11,15 @@ use nucleus_core::{
 
 use crate::compile::{NucleusProgram, Program};
 
-/// The states of all nuclei, by the ids of the program.
+use super::substep_merge::SubstepMerge;
+
+/// The states of all nuclei, by the ids of the program. Velocities are per second of the scene.
 pub(super) struct CombinedState<'a> {
     pub(super) program: &'a Program,
     /// One per nucleus.
     pub(super) parts: Vec<&'a dyn StateView>,
+    /// Solver seconds per second of the scene, one per nucleus.
+    pub(super) rates: Vec<f64>,
     /// The nucleus that is being solved, and the share of its evaluation interval that has passed. All others are at the
     /// end of theirs.
     pub(super) solving: Option<(usize, f64)>,
@@ -51,7 +56,8 @@ impl StateView for CombinedState<'_> {
 
     fn velocities(&self, cloth: ClothId, units_per_metre: f64, out: &mut Vec<[f32; 3]>) {
         let (part, id, nucleus) = self.cloth(cloth);
-        part.velocities(id, self.units(units_per_metre, nucleus), out);
+        let (nucleus_index, _) = self.program.locate_cloth(cloth);
+        part.velocities(id, self.units(units_per_metre, nucleus) * self.rates[nucleus_index], out);
     }
 
     fn contacts(&self, out: &mut Vec<Vec<ContactState>>) {
@@ -117,6 +123,10 @@ pub(super) struct CombinedObserver<'a> {
     pub(super) nucleus: usize,
     /// The states of the other nuclei, in order.
     pub(super) others: Vec<&'a dyn StateView>,
+    /// Solver seconds per second of the scene, of all nuclei.
+    pub(super) rates: Vec<f64>,
+    /// The substeps of the frame, where they are merged by time.
+    pub(super) merge: Option<&'a RefCell<SubstepMerge>>,
     pub(super) program: &'a Program,
 }
 
@@ -135,21 +145,30 @@ impl<'a> CombinedObserver<'a> {
 
 impl StepObserver for CombinedObserver<'_> {
     fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
+        if let Some(merge) = self.merge {
+            merge.borrow_mut().capture(self.nucleus, moment, state, self.rates[self.nucleus]);
+        }
         let parts = self.parts(state);
         let solving = Some((self.nucleus, f64::from(moment.substep) / f64::from(moment.substeps)));
         let moment = SubstepIndex { substep: self.done + moment.substep, substeps: self.total };
-        self.watch.substep(moment, &CombinedState { program: self.program, parts, solving });
+        let rates = self.rates.clone();
+        self.watch.substep(moment, &CombinedState { program: self.program, parts, rates, solving });
     }
 
     fn step(&mut self, share: f64, state: &dyn StateView) {
         let parts = self.parts(state);
         let solving = Some((self.nucleus, share));
         let share = (f64::from(self.done) + share * f64::from(self.own)) / f64::from(self.total);
-        self.watch.step(share, &CombinedState { program: self.program, parts, solving });
+        let rates = self.rates.clone();
+        self.watch.step(share, &CombinedState { program: self.program, parts, rates, solving });
     }
 
     fn should_continue(&self) -> ControlFlow<()> {
         self.watch.should_continue()
+    }
+
+    fn observes_substeps(&self) -> bool {
+        self.watch.observes_substeps()
     }
 
     fn enter(&mut self, stage: Stage) {

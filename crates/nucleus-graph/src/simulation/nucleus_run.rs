@@ -16,6 +16,8 @@ pub(super) struct NucleusRun<R: Real> {
     pub(super) evaluated: f64,
     /// The last evaluation was not solved.
     pub(super) was_skipped: bool,
+    /// Solver seconds per second of the scene in the last evaluation: 0 if it was not solved.
+    pub(super) rate: f64,
 }
 
 /// One call of the solver: an evaluation interval of one nucleus.
@@ -30,6 +32,8 @@ pub(super) struct SolverCall {
     /// The evaluation before was not solved: the solver's state is not that of the start of the interval.
     pub(super) is_discontinuous: bool,
     pub(super) substeps: u32,
+    /// Index of the evaluation interval in the frame.
+    pub(super) interval: u32,
     /// It is the first call at its time.
     pub(super) is_new_time: bool,
     /// The nucleus returns to its initial state first.
@@ -39,6 +43,7 @@ pub(super) struct SolverCall {
 impl<R: Real> NucleusRun<R> {
     /// A nucleus in its initial state, at its start frame.
     pub(super) fn new(program: &Program, nucleus: usize, threads: usize) -> Self {
+        let index = nucleus;
         let nucleus = &program.nuclei()[nucleus];
         let start = nucleus.start() as f64;
         let now = program.graph().at(start).get(nucleus.node(), &nucleus::CURRENT_TIME);
@@ -48,6 +53,7 @@ impl<R: Real> NucleusRun<R> {
             now,
             evaluated: start,
             was_skipped: false,
+            rate: program.time_rate(index, [start, start + 1.0]),
         }
     }
 
@@ -71,6 +77,7 @@ impl<R: Real> NucleusRun<R> {
         if !advances || !moment.get(id, &nucleus::ENABLE) {
             self.was_skipped = true;
             if now > start {
+                self.rate = 0.0;
                 self.hold(program, index, [from, frame], elapsed);
             }
             return None;
@@ -82,6 +89,7 @@ impl<R: Real> NucleusRun<R> {
             elapsed,
             is_discontinuous: std::mem::take(&mut self.was_skipped),
             substeps: moment.get(id, &nucleus::SUB_STEPS) as u32,
+            interval: 0,
             is_new_time: false,
             resets,
         })
@@ -97,13 +105,13 @@ impl<R: Real> NucleusRun<R> {
 
     /// Appends the state to a checkpoint.
     pub(super) fn save(&self, out: &mut Vec<u8>) {
-        let Self { solver, attachments, now, evaluated, was_skipped } = self;
+        let Self { solver, attachments, now, evaluated, was_skipped, rate } = self;
         let AttachmentState { held, formed, emitters, .. } = attachments;
         solver.save().encode(out);
         held.encode(out);
         formed.encode(out);
         emitters.iter().map(|state| (state.emitted, state.remainder)).collect::<Vec<_>>().encode(out);
-        (*now, (*evaluated, *was_skipped)).encode(out);
+        (*now, (*evaluated, (*was_skipped, *rate))).encode(out);
     }
 
     /// Reads the state from a checkpoint.
@@ -118,7 +126,7 @@ impl<R: Real> NucleusRun<R> {
         let held: Vec<Option<Vec<Vector3<f64>>>> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         let formed: Vec<bool> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         let emitters: Vec<(u64, f64)> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
-        let (now, (evaluated, was_skipped)) = Encode::decode(from).ok_or(RestoreError::Damaged)?;
+        let (now, (evaluated, (was_skipped, rate))) = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         let emitters: Vec<EmitterState> =
             emitters.into_iter().map(|(emitted, remainder)| EmitterState { emitted, remainder }).collect();
         if !nucleus.accepts_attachments(&held) || !nucleus.accepts_constraints(&formed) {
@@ -126,6 +134,6 @@ impl<R: Real> NucleusRun<R> {
         }
         let solver = Solver::restored(nucleus.model().clone(), threads, &solver)?;
         let attachments = AttachmentState { held, formed, emitters, ..AttachmentState::default() };
-        Ok(Self { solver, attachments, now, evaluated, was_skipped })
+        Ok(Self { solver, attachments, now, evaluated, was_skipped, rate })
     }
 }

@@ -154,3 +154,129 @@ fn a_collider_of_one_nucleus_stays_at_the_end_of_its_frame_while_the_next_nucleu
     }
     assert!(other.iter().all(|height| (height - 4.0).abs() < 1e-5), "{other:?}");
 }
+
+fn program_of(text: &str) -> Program {
+    let (scene, _) = read_scene_text(text, Path::new("test.ron")).expect("a valid scene");
+    compile(&scene).expect("a valid scene")
+}
+
+/// The first coordinate of the first point, and its velocity.
+fn along_x(state: &dyn StateView, cloth: ClothId) -> [f64; 2] {
+    let mut column = Vec::new();
+    let mut first = |read: &dyn Fn(&mut Vec<[f32; 3]>)| {
+        read(&mut column);
+        f64::from(column[0][0])
+    };
+    [first(&|out| state.positions(cloth, 1.0, out)), first(&|out| state.velocities(cloth, 1.0, out))]
+}
+
+// The time of the nucleus runs at half speed until frame 3 and at a quarter of that from then on; at frame 5 it stands still.
+#[test]
+fn velocities_are_per_second_of_the_scene() {
+    for second in ["", r#""z": nucleus(), "c": nParticle(position0: [(9, 0, 0)], nucleus: "z"),"#] {
+        let program = program_of(&format!(
+            r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {{
+                "n": nucleus(gravity: 0, timeScale: keys([(2, 0.5), (3, 0.125)]), enable: keys([(1, true), (5, false)])),
+                "b": nParticle(position0: [(0, 0, 0)], velocity0: [(1, 0, 0)], drag: 0, nucleus: "n"), {second}
+            }})"#
+        ));
+        let mut run = Simulation::<f64>::new(&program, 1);
+        assert_eq!(along_x(run.state(), ClothId(0)), [0.0, 0.5]);
+        let mut before = 0.0;
+        for expected in [0.5, 0.125, 0.125, 0.0] {
+            let mut seen = Positions { cloths: vec![ClothId(0)], ..Positions::default() };
+            run.advance(&mut seen);
+            let saved = Simulation::<f64>::restored(&program, 1, &run.save()).expect("the same program");
+            let [x, velocity] = along_x(run.state(), ClothId(0));
+            assert_eq!(along_x(saved.state(), ClothId(0)), [x, velocity]);
+            assert_eq!(seen.velocities.last(), Some(&velocity));
+            assert!((velocity - expected).abs() < 1e-6, "{velocity}, not {expected}");
+            assert!((24.0 * (x - before) - velocity).abs() < 1e-5, "{x} after {before} at {velocity}");
+            before = x;
+        }
+    }
+}
+
+/// Notes the share of the frame and first coordinates at each substep, and the velocities of the first cloth.
+#[derive(Default)]
+struct Positions {
+    cloths: Vec<ClothId>,
+    seen: Vec<(f64, Vec<f64>)>,
+    velocities: Vec<f64>,
+}
+
+impl StepObserver for Positions {
+    fn substep(&mut self, SubstepIndex { substep, substeps }: SubstepIndex, state: &dyn StateView) {
+        let along = self.cloths.iter().map(|&cloth| along_x(state, cloth));
+        let [positions, velocities] = [0, 1].map(|k| along.clone().map(|row| row[k]).collect::<Vec<f64>>());
+        self.velocities.push(velocities[0]);
+        self.seen.push((f64::from(substep) / f64::from(substeps), positions));
+    }
+}
+
+/// Two beads at 24 m/s, each in a nucleus of its own with these attributes.
+fn two_beads(every: f64, nuclei: [&str; 2]) -> Program {
+    let bead = |name: &str, nucleus: &str| {
+        format!(
+            r#""{name}": nParticle(position0: [(0, 0, 0)], velocity0: [(24, 0, 0)], drag: 0, radius: 0.1,
+                nucleus: "{nucleus}"),"#
+        )
+    };
+    program_of(&format!(
+        r#"Scene(time: (start: 1, end: 9, fps: 24, every: {every}), nodes: {{
+            "m": nucleus(gravity: 0, {}), "n": nucleus(gravity: 0, {}), {} {}
+        }})"#,
+        nuclei[0],
+        nuclei[1],
+        bead("a", "m"),
+        bead("b", "n"),
+    ))
+}
+
+#[test]
+fn substeps_of_several_nuclei_are_seen_at_their_own_times() {
+    let cases: [(f64, [&str; 2], &[f64]); 4] = [
+        (1.0, ["subSteps: 2", "subSteps: 3"], &[1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0]),
+        (1.0, ["subSteps: 2", "subSteps: 2"], &[0.5, 1.0]),
+        (0.5, ["subSteps: 1", "subSteps: 2"], &[0.25, 0.5, 0.75, 1.0]),
+        (1.0, ["subSteps: 1", "subSteps: 1, startFrame: 5"], &[1.0]),
+    ];
+    for (every, nuclei, times) in cases {
+        let mut run = Simulation::<f64>::new(&two_beads(every, nuclei), 1);
+        let starts_later = nuclei[1].contains("startFrame");
+        for frame in 0..2 {
+            let mut seen = Positions { cloths: vec![ClothId(0), ClothId(1)], ..Positions::default() };
+            run.advance(&mut seen);
+            assert_eq!(seen.seen.len(), times.len(), "{nuclei:?}");
+            for ((share, positions), time) in seen.seen.iter().zip(times) {
+                assert!((share - time).abs() < 1e-12, "{share}, not {time}");
+                let expected = f64::from(frame) + time;
+                assert!((positions[0] - expected).abs() < 1e-5, "{nuclei:?}: {positions:?} at {expected}");
+                let of_second = if starts_later { 0.0 } else { expected };
+                assert!((positions[1] - of_second).abs() < 1e-5, "{nuclei:?}: {positions:?} at {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_restored_run_of_several_nuclei_shows_the_same_substeps() {
+    let balls = r#"maximumCorner: (3, 3, 3), radius: 0.2"#;
+    let program = program_of(&format!(
+        r#"Scene(time: (start: 1, end: 30, fps: 24), nodes: {{
+            "m": nucleus(subSteps: 2, usePlane: true), "n": nucleus(subSteps: 3, usePlane: true),
+            "a": nParticle({balls}, nucleus: "m"), "b": nParticle({balls}, nucleus: "n"),
+        }})"#
+    ));
+    let mut run = Simulation::<f32>::new(&program, 1);
+    while run.frame() < 20 {
+        run.advance(&mut ());
+    }
+    let mut again = Simulation::<f32>::restored(&program, 1, &run.save()).expect("the same program");
+    let mut seen =
+        [(); 2].map(|()| Positions { cloths: vec![ClothId(0), ClothId(1)], ..Positions::default() });
+    run.advance(&mut seen[0]);
+    again.advance(&mut seen[1]);
+    assert_eq!(seen[0].seen, seen[1].seen);
+    assert_eq!(seen[0].velocities, seen[1].velocities);
+}
