@@ -8,13 +8,16 @@ use std::str::FromStr;
 
 use anyhow::{Context, Result, bail, ensure};
 use nucleus_cache::{ObjectKind, Playback};
-use nucleus_graph::attributes::{Attribute, Value, n_base, n_particle, particle};
+use nucleus_core::Particle;
+use nucleus_graph::attributes::{Attribute, Choice, Value, n_base, n_particle, particle};
 use nucleus_graph::compile::{self, Object, Program};
 use nucleus_graph::graph::{NodeId, Setting};
 use nucleus_graph::scene::Scene;
 
 use crate::output::say;
 use crate::{diagnostics, files};
+
+mod reset;
 
 /// A frame of a cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -56,7 +59,9 @@ impl InitialState {
         let moment = files::moment(&cache, self.frame)
             .with_context(|| format!("cannot start from `{}`", self.cache.display()))?;
         let scale = program.units_per_metre() / cache.run().units_per_metre;
-        let (mut has_velocities, mut ageless) = (true, Vec::new());
+        let (mut has_velocities, mut unknown) = (true, Vec::new());
+        let at = cache.time_samples()[moment].frame;
+        let from_start = at <= cache.run().start;
         for cloth in cloths {
             let object = self.matching(&mut cache, moment, cloth)?;
             let positions = cache.positions(object, moment)?;
@@ -67,26 +72,41 @@ impl InitialState {
                     estimated_velocities(&mut cache, object, moment)?
                 }
             };
+            // Recorded velocities are per second of the scene, and those of a start state per second of the solver.
+            let per_second = scale / time_rate(program, cloth, at, from_start);
             match cloth.radius {
                 None => {
                     set_column(&mut scene, cloth, &n_base::START_POSITIONS.row, &positions, scale)?;
-                    set_column(&mut scene, cloth, &n_base::START_VELOCITIES.row, &velocities, scale)?;
+                    set_column(&mut scene, cloth, &n_base::START_VELOCITIES.row, &velocities, per_second)?;
                 }
                 Some(_) => {
                     let node = node_of(&scene, cloth)?;
                     scene.set_particles(node, in_scene_units(&positions, scale))?;
-                    set_column(&mut scene, cloth, &n_particle::VELOCITY0.row, &velocities, scale)?;
+                    set_column(&mut scene, cloth, &n_particle::VELOCITY0.row, &velocities, per_second)?;
                 }
             }
             if cloth.varies && !positions.is_empty() && !has_ages(&scene, cloth) {
-                ageless.push(format!("`{}`", cloth.name));
+                let particles = cache.particles(object, moment)?.unwrap_or_default();
+                set_particles(&mut scene, cloth, &particles)?;
+                let node = scene.graph.node(node_of(&scene, cloth)?);
+                let mode = node.get(&particle::LIFESPAN_MODE);
+                if mode == RANDOM_RANGE || (particles.is_empty() && mode != LIVE_FOREVER) {
+                    unknown.push(format!("`{}`", cloth.name));
+                }
             }
         }
-        if !ageless.is_empty() {
+        if !unknown.is_empty() {
             say!(
-                "warning: a cache holds no ages, numbers and lifespans of particles: those of {} begin as newborn; give them \
-                 with `age0`, `particleId0` and `lifespanPP`",
-                ageless.join(", ")
+                "warning: the lifespans of the particles of {} at the start are drawn anew; give them with \
+                 `lifespanMode: lifespanPPOnly` and `lifespanPP`",
+                unknown.join(", ")
+            );
+        }
+        let reset = reset::lost_state(&scene.graph);
+        if !reset.is_empty() {
+            say!(
+                "warning: a cache holds positions and velocities alone, so these begin anew: {}",
+                reset.join("; ")
             );
         }
         if !has_velocities {
@@ -145,6 +165,42 @@ fn estimated_velocities(cache: &mut Playback, object: usize, moment: usize) -> R
         .zip(&earlier)
         .map(|(now, before)| [0, 1, 2].map(|axis| speed((&now[axis], &before[axis]))));
     Ok(each.collect())
+}
+
+/// `lifespanMode` of particles that never die.
+const LIVE_FOREVER: Choice = Choice(0);
+/// `lifespanMode` of particles whose lifespans are drawn.
+const RANDOM_RANGE: Choice = Choice(2);
+/// `lifespanMode` of particles whose lifespans are listed.
+const LISTED: Choice = Choice(3);
+
+/// Sets the ages, numbers and listed lifespans of particles, and their masses where they differ.
+fn set_particles(scene: &mut Scene, object: &Object, particles: &[Particle]) -> Result<()> {
+    let Some(first) = particles.first() else { return Ok(()) };
+    let node = node_of(scene, object)?;
+    let mut set = |row: &'static Attribute, of: &dyn Fn(&Particle) -> f64| {
+        scene.graph.set(node, row, Setting::Fixed(Value::Floats(particles.iter().map(of).collect())))
+    };
+    set(&particle::AGE0.row, &|particle| particle.age)?;
+    set(&particle::PARTICLE_ID0.row, &|particle| particle.id as f64)?;
+    if particles.iter().any(|particle| particle.mass != first.mass) {
+        set(&particle::MASS0.row, &|particle| particle.mass)?;
+    }
+    // The largest number stands for the lifespan of a particle that never dies.
+    if scene.graph.node(node).get(&particle::LIFESPAN_MODE) == LISTED {
+        let lifespans = particles.iter().map(|particle| particle.lifespan.min(f64::MAX)).collect();
+        scene.graph.set(node, &n_particle::LIFESPAN_PP.row, Setting::Fixed(Value::Floats(lifespans)))?;
+    }
+    Ok(())
+}
+
+/// Solver seconds per second of the scene at a frame, of the nucleus of an object; 1 where its time stands still.
+fn time_rate(program: &Program, cloth: &Object, frame: i32, from_start: bool) -> f64 {
+    let compile::ObjectKind::Cloth(id) = cloth.kind else { return 1.0 };
+    let (frame, every) = (f64::from(frame), program.every());
+    let interval = if from_start { [frame, frame + 1.0] } else { [frame - every, frame] };
+    let rate = program.time_rate(program.nucleus_of(id), interval);
+    if rate > 0.0 { rate } else { 1.0 }
 }
 
 /// Whether the scene gives the ages of the particles at the start.

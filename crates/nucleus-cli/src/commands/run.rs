@@ -37,7 +37,8 @@ pub struct Run {
     /// Frames to run: a count that includes the start frame (`48`) or a range (`10..58`); default: those of the scene.
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
-    /// Initial state of all cloth: a frame of a cache, `drape.mcap@80`, or its last frame, `drape.mcap`.
+    /// Initial state of all cloth: a frame of a cache, `drape.mcap@80`, or its last frame, `drape.mcap`. Positions and
+    /// velocities are taken over, and ages and numbers of particles; constraints, plasticity and gas begin anew.
     #[arg(long, value_name = "CACHE@FRAME")]
     from: Option<InitialState>,
     /// Threads to use; default: one per core. The result does not depend on it.

@@ -98,16 +98,110 @@ fn particles_of_a_cache_replace_those_that_fill_a_box_or_a_mesh() {
     }
 }
 
+/// Writes a scene whose particles live for half a second, of a steady rate of 48 per second.
+fn fountain(folder: &Path, lifespan: &str) {
+    let text = format!(
+        r#"Scene(time: (start: 1, end: 30, fps: 24), nodes: {{
+            "n": nucleus(), "p": nParticle(radius: 0.01, {lifespan}),
+            "e": pointEmitter(target: "p", emitterType: directional, rate: 48, speed: 4),
+        }})"#
+    );
+    fs::write(folder.join("drape.ron"), text).unwrap();
+}
+
+/// The particles of the first object at the end of a frame.
+fn living(folder: &Path, cache: &str, frame: i32) -> Vec<nucleus_core::Particle> {
+    let mut cache = Playback::open(folder.join(cache)).unwrap();
+    let moment = cache.end_of(frame).unwrap();
+    cache.particles(0, moment).unwrap().unwrap()
+}
+
 #[test]
-fn particles_that_start_from_a_cache_without_their_ages_are_warned_of() {
+fn particles_of_a_cache_keep_their_ages_and_numbers() {
     let folder = folder();
-    let emitted =
-        r#""p": nParticle(lifespanMode: constant, lifespan: 1), "e": pointEmitter(target: "p", rate: 48)"#;
-    particles(folder.path(), emitted);
+    fountain(folder.path(), "lifespanMode: constant, lifespan: 0.5");
     run(folder.path(), &["--velocities", "-o", "whole.mcap"]);
-    let output = run(folder.path(), &["--from", "whole.mcap@5", "-o", "rest.mcap"]);
+    let from = ["--from", "whole.mcap@20", "--frames", "20..30", "-o", "rest.mcap"];
+    let output = run(folder.path(), &from);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("those of `p` begin as newborn"), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("warning"), "{}", stderr(&output));
+    assert_eq!(living(folder.path(), "rest.mcap", 20), living(folder.path(), "whole.mcap", 20));
+    let [rest, whole] = ["rest.mcap", "whole.mcap"].map(|cache| living(folder.path(), cache, 30));
+    // A rate of 48 for half a second; one more where the last of them is just about to die.
+    let is_steady = |living: usize| living == 24 || living == 25;
+    assert!(is_steady(whole.len()) && is_steady(rest.len()), "{} and {}", whole.len(), rest.len());
+    let mut numbers: Vec<u64> = rest.iter().map(|particle| particle.id).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    assert_eq!(numbers.len(), rest.len(), "{numbers:?}");
+}
+
+#[test]
+fn only_lifespans_that_are_drawn_anew_are_warned_of() {
+    let folder = folder();
+    for (lifespan, is_warned) in [
+        ("lifespanMode: randomRange, lifespan: 0.5, lifespanRandom: 0.1", true),
+        ("lifespanMode: constant, lifespan: 0.5", false),
+        ("drag: 0", false),
+    ] {
+        fountain(folder.path(), lifespan);
+        run(folder.path(), &["--velocities", "-o", "whole.mcap", "--frames", "9", "--force"]);
+        let output = run(folder.path(), &["--from", "whole.mcap@9", "--force", "-o", "rest.mcap"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = stderr(&output);
+        assert_eq!(said.contains("the particles of `p` at the start are drawn anew"), is_warned, "{said}");
+    }
+}
+
+#[test]
+fn a_run_from_a_cache_names_the_state_that_begins_anew() {
+    let folder = folder();
+    let bead = |name: &str, x: i32| format!(r#""{name}": nParticle(position0: [({x}, 0, 0)]), "#);
+    let link = |more: &str| {
+        format!(
+            r#""k": dynamicConstraint(constraintType: pointToPoint, components: ["a", "b"], {more}),
+            "s": polyPlane(), "c": nCloth(inputMesh: "s"#
+        )
+    };
+    let said = |constraint: &str, cloth: &str| {
+        let nodes = [bead("a", 0), bead("b", 1), link(constraint), format!(r#"", {cloth}"#)].concat() + ")";
+        particles(folder.path(), &nodes);
+        run(folder.path(), &["--velocities", "-o", "whole.mcap", "--force"]);
+        let output = run(folder.path(), &["--from", "whole.mcap", "--force", "-o", "rest.mcap"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let lost = said("glueStrength: 0.5", "restitutionTension: 5, pressureMethod: volumeTrackingModel");
+    for part in [
+        "broken links of `k` hold again",
+        "rest lengths of `k` are measured at the first frame",
+        "`c` has no plastic deformation",
+        "`c` has the gas of its start state",
+    ] {
+        assert!(lost.contains(part), "{lost}");
+    }
+    assert!(!said("restLengthMethod: constant, restLength: 1", "").contains("begin anew"));
+}
+
+#[test]
+fn velocities_of_a_cache_are_converted_to_the_time_of_the_nucleus() {
+    let folder = folder();
+    let text = r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {
+        "n": nucleus(gravity: 0, timeScale: 0.25),
+        "p": nParticle(position0: [(0, 0, 0)], velocity0: [(1, 0, 0)], drag: 0)})"#;
+    fs::write(folder.path().join("drape.ron"), text).unwrap();
+    for velocities in [&["--velocities"][..], &[]] {
+        run(folder.path(), &[&["-o", "whole.mcap", "--force"], velocities].concat());
+        let from =
+            ["--velocities", "--from", "whole.mcap@5", "--frames", "5..9", "--force", "-o", "rest.mcap"];
+        assert_eq!(run(folder.path(), &from).status.code(), Some(0));
+        for frame in [5, 9] {
+            let (place, velocity) = state(folder.path(), "rest.mcap", frame);
+            let expected = 0.25 * (frame - 1) as f32 / 24.0;
+            assert!((place[0][0] - expected).abs() < 1e-5, "{place:?}, not {expected}");
+            assert!((velocity.unwrap()[0][0] - 0.25).abs() < 1e-5);
+        }
+    }
 }
 
 #[test]
