@@ -94,11 +94,22 @@ impl<R: Real> Simulation<R> {
         let merge = RefCell::new(SubstepMerge::new(&self.program, start, intervals));
         let report = self.advance_merged(change, &mut WithoutSubsteps(watch), Some(&merge));
         if !report.report.stopped {
-            let ends = self.runs.iter().map(|run| (&run.solver as &dyn StateView, run.rate));
-            let ends: Vec<_> = ends.collect();
-            merge.borrow().show(&self.program, &ends, watch);
+            self.show(&merge.borrow(), watch);
         }
         report
+    }
+
+    /// Shows the substeps of the last frame in the order of time.
+    fn show(&self, merge: &SubstepMerge, watch: &mut dyn StepObserver) {
+        for (index, between) in merge.moments() {
+            // Snapshots have the velocities of the scene already.
+            let seen = between.iter().zip(&self.runs).map(|(snapshot, run)| match snapshot {
+                Some(snapshot) => (snapshot as &dyn StateView, 1.0),
+                None => (&run.solver as &dyn StateView, run.rate),
+            });
+            let (parts, rates) = seen.unzip();
+            watch.substep(index, &CombinedState { program: &self.program, parts, rates, solving: None });
+        }
     }
 
     /// Solves the next frame; `merge` keeps the substeps of several nuclei.

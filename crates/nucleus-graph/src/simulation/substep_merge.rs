@@ -13,7 +13,6 @@ use nucleus_core::{
 
 use crate::compile::Program;
 
-use super::combined::CombinedState;
 use super::nucleus_run::SolverCall;
 
 /// Parts of an evaluation interval in which its substeps are placed, at most: of any more they are rounded.
@@ -75,25 +74,13 @@ impl SubstepMerge {
         track.substeps.push((time, Snapshot::of(state, track.start.units, rate)));
     }
 
-    /// Shows the states in the order of their times. `ends` are the nuclei at the end of the frame, with their rates.
-    pub(super) fn show(
-        &self,
-        program: &Program,
-        ends: &[(&dyn StateView, f64)],
-        watch: &mut dyn StepObserver,
-    ) {
+    /// The times of all substeps in order, each with the states of the nuclei; `None` where one is at the end of the frame.
+    pub(super) fn moments(&self) -> impl Iterator<Item = (SubstepIndex, Vec<Option<Snapshot>>)> + '_ {
         let substeps = self.intervals * self.parts;
         let times = self.nuclei.iter().flat_map(|track| track.substeps.iter().map(|(time, _)| *time));
-        for substep in times.chain([substeps]).collect::<BTreeSet<u32>>() {
-            let between: Vec<Option<Snapshot>> = self.nuclei.iter().map(|track| track.at(substep)).collect();
-            let seen = between.iter().zip(ends).map(|(snapshot, &end)| match snapshot {
-                Some(snapshot) => (snapshot as &dyn StateView, 1.0),
-                None => end,
-            });
-            let (parts, rates) = seen.unzip();
-            let state = CombinedState { program, parts, rates, solving: None };
-            watch.substep(SubstepIndex { substep, substeps }, &state);
-        }
+        let times: BTreeSet<u32> = times.chain([substeps]).collect();
+        let states = |time| self.nuclei.iter().map(|track| track.at(time)).collect();
+        times.into_iter().map(move |substep| (SubstepIndex { substep, substeps }, states(substep)))
     }
 }
 
@@ -119,7 +106,7 @@ fn greatest_common_divisor(a: u64, b: u64) -> u64 {
 
 /// The state of one nucleus, in its own units. Velocities are per second of the scene.
 #[derive(Clone)]
-struct Snapshot {
+pub(super) struct Snapshot {
     units: f64,
     cloths: Vec<ClothSnapshot>,
     colliders: Vec<ColliderSnapshot>,
