@@ -193,11 +193,14 @@ fn settings_that_make_no_sense_are_named_with_what_to_do() {
 
 #[test]
 fn pressure_in_a_mesh_that_is_inside_out_is_a_warning() {
-    let text = of_nodes(
-        r#""n": nucleus(), "p": polyCube(scaleX: -1),
-           "c": nCloth(inputMesh: "p", pressureMethod: volumeTrackingModel)"#,
-        "",
-    );
+    let folder = tempfile::tempdir().expect("a folder");
+    // A tetrahedron, its faces clockwise.
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+    let file = folder.path().join("inward.obj");
+    std::fs::write(&file, obj).expect("written");
+    let mesh = format!("mesh(file: {:?})", file.display().to_string());
+    let cloth = r#""c": nCloth(inputMesh: "p", pressureMethod: volumeTrackingModel)"#;
+    let text = of_nodes(&format!(r#""n": nucleus(), "p": {mesh}, {cloth}"#), "");
     let expected = "warning at volumeTrackingModel: the faces of `c` face inwards | its air is kept inside all the \
         same; drag and push-out see it reversed";
     assert_eq!(said(&text), [expected]);
@@ -205,7 +208,9 @@ fn pressure_in_a_mesh_that_is_inside_out_is_a_warning() {
     let expected = "warning at keys([(1, 0), (9, 1)]): the faces of `c` face inwards: a pressure above 0 turns it inside \
         out | reverse its normals, or the sign of `pressure`";
     assert_eq!(said(&by_hand), [expected]);
-    assert_eq!(said(&by_hand.replace("scaleX: -1", "")), Vec::<String>::new());
+    // Mirrored, its faces are turned, and look inwards still.
+    assert_eq!(said(&by_hand.replace(".obj\")", ".obj\", scaleX: -1)")), [expected]);
+    assert_eq!(said(&by_hand.replace(&mesh, "polyCube(scaleX: -1)")), Vec::<String>::new());
 }
 
 #[test]
