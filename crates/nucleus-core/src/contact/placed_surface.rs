@@ -22,7 +22,7 @@ pub struct PlacedSurface {
     bvh: Bvh,
     /// The origin of the boxes.
     origin: Point,
-    /// Of corners, of any length; empty until [`set_normals`](Self::set_normals).
+    /// Normals of the corners, not of unit length; empty until [`set_normals`](Self::set_normals).
     normals: Vec<Point>,
 }
 

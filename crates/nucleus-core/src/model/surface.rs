@@ -65,11 +65,20 @@ impl Faces {
 
     /// The faces seen from behind: each begins at the same corner and goes the other way round.
     pub fn reversed(&self) -> Self {
-        let mut corners = Vec::with_capacity(self.corners.len());
-        for face in self.iter() {
-            corners.extend(face.iter().take(1).chain(face.iter().skip(1).rev()));
-        }
+        let mut corners = self.corners.clone();
+        self.reverse(&mut corners);
         Self { starts: self.starts.clone(), corners }
+    }
+
+    /// Puts a column with an entry per corner in the order of the faces seen from behind.
+    ///
+    /// # Panics
+    /// When it has fewer entries.
+    pub fn reverse<T>(&self, column: &mut [T]) {
+        for face in self.starts.windows(2) {
+            let [first, end] = [face[0], face[1]].map(|corner| corner as usize);
+            column[first..end].get_mut(1..).into_iter().for_each(<[T]>::reverse);
+        }
     }
 
     /// The triangulated faces: a fan in each polygon, a quad along its first diagonal.

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use nucleus_core::Surface;
+use nucleus_core::{Faces, Surface};
 
+use crate::animation::Affine;
 use crate::attributes::{
     Painting, Value, mesh, n_base, n_particle, poly_cube, poly_cylinder, poly_plane, poly_sphere,
 };
@@ -111,6 +112,11 @@ impl Geometry {
         let make = || make(scene, scene.graph.node(node), budget, findings);
         made.entry(node).or_insert_with(make).as_ref()
     }
+}
+
+/// The faces of a mesh that is placed in the world: turned where it is mirrored, so that its outside stays outside.
+pub(super) fn placed_faces(faces: &Faces, placement: &Affine) -> Faces {
+    if placement.mirrors() { faces.reversed() } else { faces.clone() }
 }
 
 /// The file that a mesh node is read from, at the first frame of the scene; `None` for other nodes.

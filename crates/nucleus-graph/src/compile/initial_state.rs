@@ -19,6 +19,7 @@ use crate::memory::{Cost, Size};
 
 use super::compiler::Compiler;
 use super::emission::emitter_nodes;
+use super::geometry::placed_faces;
 use super::particle_ramps::is_event_target;
 
 /// An object with its mesh at the start frame, in world space; lengths in scene units. Particles are their own mesh.
@@ -76,10 +77,7 @@ impl Compiler<'_> {
         for position in &mut surface.positions {
             *position = placement.point(*position);
         }
-        // The outside of a mesh stays outside.
-        if placement.mirrors() {
-            surface.faces = surface.faces.reversed();
-        }
+        surface.faces = placed_faces(&surface.faces, &placement);
         Some((mesh, surface))
     }
 

@@ -25,11 +25,7 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
         // A mirrored mesh has its faces turned.
         let is_mirrored = scene.graph.at(nucleus.start as f64).placement(mesh).mirrors();
         if is_mirrored && corners.len() == object.faces.corners().len() {
-            let mut first = 0;
-            for face in object.faces.iter() {
-                corners[first + 1..first + face.len()].reverse();
-                first += face.len();
-            }
+            object.faces.reverse(&mut corners);
         }
         let tearing =
             nucleus.cloths.iter().find(|cloth| cloth.node == node).and_then(|cloth| cloth.tearing.as_ref());

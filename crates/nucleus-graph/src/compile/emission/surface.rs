@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::animation::sin_cos_degrees;
 use crate::attributes::{Painting, Value, n_base, n_cloth, point_emitter, surface_shape};
 use crate::compile::compiler::Compiler;
+use crate::compile::geometry::placed_faces;
 use crate::compile::sources::EmittingMesh;
 use crate::graph::{EvalContext, NodeId};
 use crate::mesh::doubled_area;
@@ -42,12 +43,7 @@ impl Compiler<'_> {
         }
         let shape = self.geometry.animated(self.scene, mesh, self.findings)?;
         let surface = self.geometry.surface(self.scene, mesh, self.findings)?;
-        let is_mirrored = self.start.placement(mesh).mirrors();
-        let faces = &surface.faces;
-        let triangles = match is_mirrored {
-            true => faces.reversed().triangles().collect(),
-            false => faces.triangles().collect(),
-        };
+        let triangles = placed_faces(&surface.faces, &self.start.placement(mesh)).triangles().collect();
         let emitting = EmittingMesh { mesh, shape, triangles, rate: self.rate_map(emitter, mesh)? };
         let area = emitting.area(&self.start);
         if area.is_nan() || area <= 0.0 {
