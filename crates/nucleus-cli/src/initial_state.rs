@@ -9,7 +9,7 @@ use std::str::FromStr;
 use anyhow::{Context, Result, bail, ensure};
 use nucleus_cache::{ObjectKind, Playback};
 use nucleus_core::Particle;
-use nucleus_graph::attributes::{Attribute, Choice, Value, n_base, n_particle, particle};
+use nucleus_graph::attributes::{Attribute, Value, n_base, n_particle, particle};
 use nucleus_graph::compile::{self, Object, Program};
 use nucleus_graph::graph::{NodeId, Setting};
 use nucleus_graph::scene::Scene;
@@ -81,16 +81,17 @@ impl InitialState {
                 }
                 Some(_) => {
                     let node = node_of(&scene, cloth)?;
-                    scene.set_particles(node, in_scene_units(&positions, scale))?;
+                    scene.set_particle_positions(node, in_scene_units(&positions, scale))?;
                     set_column(&mut scene, cloth, &n_particle::VELOCITY0.row, &velocities, per_second)?;
                 }
             }
             if cloth.varies && !positions.is_empty() && !has_ages(&scene, cloth) {
                 let particles = cache.particles(object, moment)?.unwrap_or_default();
-                set_particles(&mut scene, cloth, &particles)?;
+                set_ages(&mut scene, cloth, &particles)?;
                 let node = scene.graph.node(node_of(&scene, cloth)?);
                 let mode = node.get(&particle::LIFESPAN_MODE);
-                if mode == RANDOM_RANGE || (particles.is_empty() && mode != LIVE_FOREVER) {
+                if mode == particle::RANDOM_RANGE || (particles.is_empty() && mode != particle::LIVE_FOREVER)
+                {
                     unknown.push(format!("`{}`", cloth.name));
                 }
             }
@@ -167,15 +168,8 @@ fn estimated_velocities(cache: &mut Playback, object: usize, moment: usize) -> R
     Ok(each.collect())
 }
 
-/// `lifespanMode` of particles that never die.
-const LIVE_FOREVER: Choice = Choice(0);
-/// `lifespanMode` of particles whose lifespans are drawn.
-const RANDOM_RANGE: Choice = Choice(2);
-/// `lifespanMode` of particles whose lifespans are listed.
-const LISTED: Choice = Choice(3);
-
 /// Sets the ages, numbers and listed lifespans of particles, and their masses where they differ.
-fn set_particles(scene: &mut Scene, object: &Object, particles: &[Particle]) -> Result<()> {
+fn set_ages(scene: &mut Scene, object: &Object, particles: &[Particle]) -> Result<()> {
     let Some(first) = particles.first() else { return Ok(()) };
     let node = node_of(scene, object)?;
     let mut set = |row: &'static Attribute, of: &dyn Fn(&Particle) -> f64| {
@@ -187,7 +181,7 @@ fn set_particles(scene: &mut Scene, object: &Object, particles: &[Particle]) -> 
         set(&particle::MASS0.row, &|particle| particle.mass)?;
     }
     // The largest number stands for the lifespan of a particle that never dies.
-    if scene.graph.node(node).get(&particle::LIFESPAN_MODE) == LISTED {
+    if scene.graph.node(node).get(&particle::LIFESPAN_MODE) == particle::LIFESPAN_PP_ONLY {
         let lifespans = particles.iter().map(|particle| particle.lifespan.min(f64::MAX)).collect();
         scene.graph.set(node, &n_particle::LIFESPAN_PP.row, Setting::Fixed(Value::Floats(lifespans)))?;
     }

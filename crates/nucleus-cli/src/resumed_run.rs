@@ -155,7 +155,7 @@ impl ResumedRun {
             for object in particles {
                 let recorded = self.cache.objects().iter().find(|recorded| recorded.name == object.name);
                 if let Some((node, recorded)) = scene.graph.find(&object.name).zip(recorded) {
-                    scene.set_particles(node, in_scene_units(&recorded.rest, 1.0))?;
+                    scene.set_particle_positions(node, in_scene_units(&recorded.rest, 1.0))?;
                 }
             }
         } else if let Some(seed) = extra.get(SEED) {

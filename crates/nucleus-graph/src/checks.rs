@@ -286,7 +286,7 @@ impl Check {
         self.form.parameters.first().filter(|name| **name == FRAME).and(self.arguments.first().copied())
     }
 
-    /// Whether it limits its figure, and no figure is below zero, to less than zero.
+    /// Whether its limit is below zero, which no figure is.
     pub(crate) fn is_below_zero(&self) -> bool {
         matches!(self.limit(), (Bound::AtMost, limit) if limit < 0.0)
     }

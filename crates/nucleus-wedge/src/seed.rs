@@ -56,7 +56,7 @@ pub fn displaced(mut scene: Scene, program: &Program, seed: u32) -> Scene {
         let Some(node) = scene.graph.find(&object.name) else { continue };
         // Vectors fit these attributes of every cloth and particle object.
         let _ = match object.radius {
-            Some(_) => scene.set_particles(node, displaced),
+            Some(_) => scene.set_particle_positions(node, displaced),
             None => {
                 scene.graph.set(node, &n_base::START_POSITIONS.row, Setting::Fixed(Value::Vectors(displaced)))
             }

@@ -5,6 +5,15 @@ use super::kind::Data;
 use super::node_type::node_table;
 use super::value::Choice;
 
+/// `lifespanMode: live forever`.
+pub const LIVE_FOREVER: Choice = Choice(0);
+/// `lifespanMode: constant`.
+pub const CONSTANT_LIFESPAN: Choice = Choice(1);
+/// `lifespanMode: random range`.
+pub const RANDOM_RANGE: Choice = Choice(2);
+/// `lifespanMode: lifespanPP only`.
+pub const LIFESPAN_PP_ONLY: Choice = Choice(3);
+
 node_table! {
     /// Maya's classic particle shape, the ancestor of all objects of a nucleus.
     PARTICLE = "particle", inherits None, hides [];

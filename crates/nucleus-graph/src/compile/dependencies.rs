@@ -34,9 +34,6 @@ pub(super) struct Dependency {
 const MANUAL: Choice = Choice(0);
 const BY_VOLUME: Choice = Choice(1);
 
-/// `lifespanMode`.
-const RANDOM_RANGE: Choice = Choice(2);
-const LISTED: Choice = Choice(3);
 /// `emitterType`.
 const VOLUME: Choice = Choice(4);
 
@@ -194,12 +191,12 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     Dependency {
         rows: &[&particle::LIFESPAN_RANDOM.row],
-        need: Need::Choice(&particle::LIFESPAN_MODE, Some(RANDOM_RANGE)),
+        need: Need::Choice(&particle::LIFESPAN_MODE, Some(particle::RANDOM_RANGE)),
         help: "write `lifespanMode: randomRange`",
     },
     Dependency {
         rows: &[&n_particle::LIFESPAN_PP.row],
-        need: Need::Choice(&particle::LIFESPAN_MODE, Some(LISTED)),
+        need: Need::Choice(&particle::LIFESPAN_MODE, Some(particle::LIFESPAN_PP_ONLY)),
         help: "write `lifespanMode: lifespanPPOnly`",
     },
     Dependency {

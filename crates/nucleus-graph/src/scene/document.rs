@@ -100,7 +100,11 @@ impl Scene {
     ///
     /// # Errors
     /// When the node has no particles.
-    pub fn set_particles(&mut self, node: NodeId, positions: Vec<[f64; 3]>) -> Result<(), GraphError> {
+    pub fn set_particle_positions(
+        &mut self,
+        node: NodeId,
+        positions: Vec<[f64; 3]>,
+    ) -> Result<(), GraphError> {
         use n_particle::{FILL_MESH, MAXIMUM_CORNER, MINIMUM_CORNER, POSITION0};
         self.graph.set(node, &POSITION0.row, Setting::Fixed(Value::Vectors(positions)))?;
         for filling in [&MINIMUM_CORNER.row, &MAXIMUM_CORNER.row, &FILL_MESH.row] {

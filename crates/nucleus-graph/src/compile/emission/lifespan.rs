@@ -1,15 +1,9 @@
 //! How long particles live (`lifespanMode`).
 
-use crate::attributes::{Choice, particle};
+use crate::attributes::particle::{self, CONSTANT_LIFESPAN, LIFESPAN_PP_ONLY, LIVE_FOREVER, RANDOM_RANGE};
 use crate::graph::{EvalContext, Graph, NodeId};
 
 use super::random::Random;
-
-/// `lifespanMode`.
-const FOREVER: Choice = Choice(0);
-const CONSTANT: Choice = Choice(1);
-const RANDOM_RANGE: Choice = Choice(2);
-const LISTED: Choice = Choice(3);
 
 /// The lifespans of particles that are born in an interval.
 #[derive(Debug, Clone, Copy)]
@@ -27,11 +21,11 @@ impl Lifespan {
     pub(in crate::compile) fn new(particles: NodeId, moment: &EvalContext) -> Self {
         let middle = moment.get(particles, &particle::LIFESPAN);
         match moment.get(particles, &particle::LIFESPAN_MODE) {
-            CONSTANT => Self { middle, range: 0.0, is_listed: false },
+            CONSTANT_LIFESPAN => Self { middle, range: 0.0, is_listed: false },
             RANDOM_RANGE => {
                 Self { middle, range: moment.get(particles, &particle::LIFESPAN_RANDOM), is_listed: false }
             }
-            mode => Self { middle: f64::INFINITY, range: 0.0, is_listed: mode == LISTED },
+            mode => Self { middle: f64::INFINITY, range: 0.0, is_listed: mode == LIFESPAN_PP_ONLY },
         }
     }
 
@@ -64,7 +58,7 @@ impl Lifespan {
 /// Whether particles of an object can ever die.
 pub(in crate::compile) fn dies(graph: &Graph, particles: NodeId) -> bool {
     graph.changes(particles, &particle::LIFESPAN_MODE)
-        || graph.at(0.0).get(particles, &particle::LIFESPAN_MODE) != FOREVER
+        || graph.at(0.0).get(particles, &particle::LIFESPAN_MODE) != LIVE_FOREVER
 }
 
 /// The longest lifespan over some frames, in seconds.
