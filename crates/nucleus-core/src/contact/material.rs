@@ -270,6 +270,15 @@ impl<R: Real> ContactMaterial<R> {
         ours + theirs
     }
 
+    /// The friction that bounds a tangential impulse at a contact: where the material grips, none does.
+    pub fn impact_friction_at<const N: usize, const M: usize>(
+        &self,
+        maps: &MaterialMaps<R>,
+        points: ContactPoints<'_, R, N, M>,
+    ) -> R {
+        if self.grips { R::from_f64(f64::from(f32::MAX)) } else { self.friction_at(maps, points) }
+    }
+
     /// The sum of both stickinesses at a contact.
     #[inline(always)]
     pub fn stickiness_at<const N: usize, const M: usize>(

@@ -190,6 +190,8 @@ pub struct TouchingPoint<R> {
     pub surface: [R; 3],
     /// Coefficient of restitution, 0 to 1.
     pub coefficient: R,
+    /// The sum of both frictions.
+    pub friction: R,
     /// Its distance in metres.
     pub gap: R,
     /// Whether it is nearest to an edge or a corner of the face that it touches.

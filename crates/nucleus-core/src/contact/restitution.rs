@@ -64,7 +64,8 @@ fn find_touches_of_ground<R: Real>(
             let coefficient = material.bounce_at(&pass.contact.material_maps, point);
             let surface = plane.velocity(row, displacement, h);
             let (normal, gap, is_rim) = (plane.normal(), R::ZERO, false);
-            touches.push(TouchingPoint { row, normal, surface, coefficient, gap, is_rim });
+            let friction = material.impact_friction_at(&pass.contact.material_maps, point);
+            touches.push(TouchingPoint { row, normal, surface, coefficient, friction, gap, is_rim });
         }
     }
 }

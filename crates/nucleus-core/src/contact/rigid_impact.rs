@@ -3,7 +3,8 @@
 //! A rigid body that lands on one point rebounds by an impulse on all of it. If the velocity of that point alone were
 //! reversed, its shape would undo it in the next step; and what the contact has pressed into the shape would throw the body
 //! back whatever its `bounce`. The velocities of the body's best rigid motion therefore get the impulses of its contacts, by
-//! sequential impulses on mass and moment of inertia (Catto 2005, *Iterative dynamics with temporal coherence*).
+//! sequential impulses on mass and moment of inertia (Catto 2005, *Iterative dynamics with temporal coherence*). Each contact's
+//! accumulated tangential impulse is at most its friction times its accumulated normal impulse (Coulomb's law).
 //!
 //! How much of an impulse the whole takes follows from its shape's period: a body that would spring back within a film
 //! frame takes all of it.
@@ -52,8 +53,14 @@ struct RigidContact {
     arm: Vector3<f64>,
     /// The normal speed that the body shall have here at least, in m/s.
     least: f64,
-    /// Sum of its impulses in N·s; contacts do not pull.
+    /// Sum of its normal impulses in N·s; contacts do not pull.
     impulse: f64,
+    /// Velocity of the surface, in m/s.
+    surface: Vector3<f64>,
+    /// The sum of both frictions.
+    friction: f64,
+    /// Sum of its impulses along the surface, in N·s.
+    tangential_impulse: Vector3<f64>,
 }
 
 /// Applies the impulses of what a body of these rows touches. Nothing changes where it touches nothing fast enough, or where
@@ -78,22 +85,19 @@ pub fn rebound<R: Real>(
     let pushes = push_velocities(state, touches, restitution.h);
     let mut motion = RigidMotion::new(state, rows, &pushes);
     let before = [motion.velocity, motion.spin];
-    let min_speed = restitution.min_speed.to_f64();
-    let mut is_impact = false;
     let mut contacts = Vec::with_capacity(touches.len());
+    let mut is_impact = false;
     for touch in touches {
-        let [normal, surface] = [touch.normal, touch.surface].map(|row| Vector3::from(row.map(R::to_f64)));
-        let arm = Vector3::from(state.position(touch.row)) - motion.centre;
-        let approach = normal.dot(&(surface - motion.velocity_at(&arm)));
-        is_impact |= approach > min_speed;
-        let rebound =
-            if approach > min_speed { touch.coefficient.to_f64() * approach } else { -approach.max(0.0) };
-        contacts.push(RigidContact { normal, arm, least: normal.dot(&surface) + rebound, impulse: 0.0 });
+        let (contact, is_hit) = motion.contact_at(state, touch, restitution.min_speed.to_f64());
+        contacts.push(contact);
+        is_impact |= is_hit;
     }
     if !is_impact {
         return;
     }
     for _ in 0..ROUNDS {
+        // Normal impulses go last: not to penetrate matters more than not to slide.
+        contacts.iter_mut().for_each(|contact| motion.apply_friction(contact));
         contacts.iter_mut().for_each(|contact| motion.push(contact));
     }
     for (row, push) in pushes {
@@ -136,9 +140,43 @@ impl RigidMotion {
         self.velocity + self.spin.cross(arm)
     }
 
-    /// One impulse of a contact.
+    /// The contact of a point that touches, and whether it approaches faster than `min_speed`, in m/s.
+    fn contact_at<R: Real>(
+        &self,
+        state: &State<R>,
+        touch: &TouchingPoint<R>,
+        min_speed: f64,
+    ) -> (RigidContact, bool) {
+        let [normal, surface] = [touch.normal, touch.surface].map(|row| Vector3::from(row.map(R::to_f64)));
+        let arm = Vector3::from(state.position(touch.row)) - self.centre;
+        let approach = normal.dot(&(surface - self.velocity_at(&arm)));
+        let is_hit = approach > min_speed;
+        let rebound = if is_hit { touch.coefficient.to_f64() * approach } else { -approach.max(0.0) };
+        let least = normal.dot(&surface) + rebound;
+        let (friction, tangential_impulse) = (touch.friction.to_f64(), Vector3::zeros());
+        (RigidContact { normal, arm, least, impulse: 0.0, surface, friction, tangential_impulse }, is_hit)
+    }
+
+    /// One impulse of friction: against the sliding of the contact, within its friction cone.
+    fn apply_friction(&mut self, contact: &mut RigidContact) {
+        let RigidContact { normal, arm, surface, friction, .. } = *contact;
+        if friction <= 0.0 {
+            return;
+        }
+        let motion = self.velocity_at(&arm) - surface;
+        let sliding = motion - normal * normal.dot(&motion);
+        let lever = arm.cross(&sliding.try_normalize(0.0).unwrap_or_default());
+        let mobility = self.inverse_mass + lever.dot(&(self.inverse_inertia * lever));
+        let before = contact.tangential_impulse;
+        contact.tangential_impulse = (before - sliding / mobility).cap_magnitude(friction * contact.impulse);
+        let change = contact.tangential_impulse - before;
+        self.velocity += change * self.inverse_mass;
+        self.spin += self.inverse_inertia * arm.cross(&change);
+    }
+
+    /// One normal impulse of a contact.
     fn push(&mut self, contact: &mut RigidContact) {
-        let RigidContact { normal, arm, least, impulse } = contact;
+        let RigidContact { normal, arm, least, impulse, .. } = contact;
         let lever = arm.cross(normal);
         let turn = self.inverse_inertia * lever;
         let mobility = self.inverse_mass + lever.dot(&turn);
@@ -150,7 +188,7 @@ impl RigidMotion {
     }
 }
 
-/// The velocity in m/s that contact gave to each point that touches, along the normal of its first touch.
+/// The velocity in m/s that contact gave to each point that touches, along the normal of its first touch and by friction.
 fn push_velocities<R: Real>(
     state: &State<R>,
     touches: &[TouchingPoint<R>],
@@ -158,8 +196,18 @@ fn push_velocities<R: Real>(
 ) -> Vec<(u32, Vector3<f64>)> {
     let first_touches = touches.chunk_by(|a, b| a.row == b.row).map(|touches| touches[0]);
     let push = |touch: TouchingPoint<R>| {
-        let speed = Impact::of(state, touch.row as usize).push_speed(touch.normal, h).to_f64();
-        (touch.row, Vector3::from(touch.normal.map(R::to_f64)) * speed)
+        let impact = Impact::of(state, touch.row as usize);
+        let speed = impact.push_speed(touch.normal, h).to_f64();
+        let normal = Vector3::from(touch.normal.map(R::to_f64));
+        let friction = touch.friction.to_f64();
+        if friction <= 0.0 {
+            return (touch.row, normal * speed);
+        }
+        // Along the surface constraints move a point too; friction had no more than its share of the push.
+        let correction =
+            Vector3::from(sub(impact.displacement, impact.predicted).map(R::to_f64)) / h.to_f64();
+        let along = (correction - normal * speed).cap_magnitude(friction * speed.max(0.0));
+        (touch.row, normal * speed + along)
     };
     first_touches.map(push).collect()
 }

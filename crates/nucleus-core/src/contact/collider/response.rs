@@ -238,6 +238,13 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     pub fn bounce(&self, step: &ColliderStep<'_, R>) -> R {
         self.material(step, &mut None).bounce_at(step.material_maps, self.contact_points(&(self.weights, [])))
     }
+
+    /// The friction that bounds its tangential impulse.
+    fn impact_friction(&self, step: &ColliderStep<'_, R>) -> R {
+        let (weights, mut mapped) = (&(self.weights, []), None);
+        let material = self.material(step, &mut mapped);
+        material.impact_friction_at(step.material_maps, self.contact_points(weights))
+    }
 }
 
 /// Share of a corner of a face up to which a contact is with the rim opposite to it.
@@ -262,6 +269,7 @@ impl<R: Real> ColliderContact<R, 1, 3> {
             normal: normal.map(R::from_f64),
             surface: self.surface_motion.map(|x| x / R::from_f64(frame)),
             coefficient: self.bounce(step),
+            friction: self.impact_friction(step),
             gap,
             is_rim: weights.iter().any(|&weight| weight <= RIM),
         })
