@@ -209,7 +209,8 @@ pub struct StepReport {
     pub pairs_reverted: u64,
     /// Pairs that no fallback could certify, so that one may have passed through the other; counted once per time step.
     /// Pins or colliders leave them no feasible motion, or they touched when the time step began. A point that a pin carries
-    /// through the ground plane is counted in that frame.
+    /// through the ground plane is counted in that frame, and an edge and a face that intersect when a weld between them breaks
+    /// once.
     pub pairs_unresolved: u64,
     /// Points inside a closed collider, in depenetration.
     pub depenetrating: u64,

@@ -59,7 +59,7 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
     predict_trajectories(cloths, state, cloth_contacts, frame, *now, previous_start, refresh, pool);
     let interval_share = cloth_contacts.interval.share_of(now.from);
     let displacement = [&state.start[..], &state.displacement[..]];
-    find_candidates(
+    let intersecting = find_candidates(
         cloth_contacts,
         SearchInput {
             cloths,
@@ -72,6 +72,7 @@ pub fn update_cloth_candidates<R: Real>(pass: &mut ContactPass<'_, R>) {
         refresh,
         pool,
     );
+    *counters.pairs_unresolved.get_mut() += intersecting;
     *counters.candidate_pairs.get_mut() += cloth_contacts.cache.len();
     *counters.broad_phases.get_mut() += 1;
 }
@@ -180,18 +181,20 @@ fn predict_trajectories<R: Real>(
     }
 }
 
-/// Finds the contacts of all elements with a point that violated its bound, or of all elements in a full refresh.
+/// Finds the contacts of all elements with a point that violated its bound, or of all elements in a full refresh. Returns the
+/// number of pairs that intersect where a weld broke.
 fn find_candidates<R: Real>(
     cloth_contacts: &mut ClothContacts<R>,
     input: SearchInput<'_, R>,
     refresh: RefreshKind,
     pool: &ThreadPool,
-) {
+) -> u64 {
     cloth_contacts.update_bounds(&input, refresh, pool);
+    let mut intersecting = 0;
     if !refresh.is_incremental() && cloth_contacts.untangling.may_exist() {
         let ClothContacts { elements, materials, untangling, buffers, .. } = cloth_contacts;
         let bounds = (&buffers.bounds, &buffers.group_bounds[..]);
-        find_intersections(elements, bounds, materials, &input, untangling, pool);
+        intersecting = find_intersections(elements, bounds, materials, &input, untangling, pool);
     }
     let ClothContacts {
         elements, materials, overlapping, bounds_violated, buffers, cache, untangling, ..
@@ -227,6 +230,7 @@ fn find_candidates<R: Real>(
     if !refresh.is_incremental() {
         cloth_contacts.find_overlapping();
     }
+    intersecting
 }
 
 impl<R: Real> ClothSearch<'_, R> {

@@ -17,7 +17,8 @@ use crate::parallel::thread_pool::ThreadPool;
 use crate::union_find::UnionFind;
 
 /// Finds all intersections at the start of the time step: the end is not certified yet, and what would pass on the way there
-/// is not to be untangled but stopped. Valid while the boxes of the last search are.
+/// is not to be untangled but stopped. Valid while the boxes of the last search are. Returns how many pairs that a broken weld has
+/// released intersect for the first time: they had no contact until it broke.
 pub fn find_intersections<R: Real>(
     elements: &ElementGroups,
     bounds: (&ElementBounds, &[GroupBounds]),
@@ -25,7 +26,7 @@ pub fn find_intersections<R: Real>(
     input: &SearchInput<'_, R>,
     untangling: &mut Untangling,
     pool: &ThreadPool,
-) {
+) -> u64 {
     untangling.is_search_due.fill(false);
     let SearchInput { cloths, anchors, displacement: [displacement, _], strength, filter, .. } = *input;
     let search =
@@ -37,7 +38,7 @@ pub fn find_intersections<R: Real>(
             (0..cloths.len()).for_each(|cloth| search.find_with(group as u32, cloth, found));
         }
     });
-    untangling.intersections.clear();
+    let known = std::mem::take(&mut untangling.intersections);
     found.iter().for_each(|found| untangling.intersections.extend_from_slice(found));
     if untangling.any() {
         untangling.mark_neighbourhood(cloths);
@@ -47,6 +48,19 @@ pub fn find_intersections<R: Real>(
         untangling.is_on_wrong_side.fill(false);
         untangling.sides.clear();
     }
+    count_released(&known, &untangling.intersections, filter)
+}
+
+/// The number of released pairs that intersect and did not at the last search.
+fn count_released(known: &[Intersection], found: &[Intersection], filter: &PairFilter) -> u64 {
+    if !filter.has_released() {
+        return 0;
+    }
+    let pair = |intersection: &Intersection| (intersection.edge, intersection.face);
+    let mut known: Vec<_> = known.iter().map(pair).collect();
+    known.sort_unstable();
+    let released = found.iter().filter(|found| filter.are_released(&found.edge, &found.face));
+    released.filter(|found| known.binary_search(&pair(found)).is_err()).count() as u64
 }
 
 struct IntersectionSearch<'a, R> {
