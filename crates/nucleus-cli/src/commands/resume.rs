@@ -7,6 +7,7 @@ use clap::Args;
 use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo, shell_word};
 use nucleus_core::Real;
 use nucleus_graph::checks::Check;
+use nucleus_graph::least_common_multiple;
 
 use crate::options::Scalar;
 use crate::output::say;
@@ -115,7 +116,8 @@ impl Resume {
         );
         // A changed scene may solve other frames from here on: only those of both are sure to be recorded.
         let interval = recording::interval(&program)?;
-        let interval = least_common_multiple(interval, old.cache.run().interval);
+        let both = least_common_multiple(interval.into(), old.cache.run().interval.into());
+        let interval = u32::try_from(both).unwrap_or(interval);
         let info = RunInfo {
             end,
             interval,
@@ -191,13 +193,4 @@ impl Resume {
             "{name} is complete: its last frame is {last}; `--to` continues beyond it, `--at` solves the frames after one again\n"
         ))
     }
-}
-
-/// The least common multiple of two numbers above zero, or the first of them if it is too large.
-fn least_common_multiple(a: u32, b: u32) -> u32 {
-    let (mut x, mut y) = (a, b);
-    while y > 0 {
-        (x, y) = (y, x % y);
-    }
-    (a / x.max(1)).checked_mul(b).unwrap_or(a)
 }

@@ -53,8 +53,7 @@ impl SubstepMerge {
 
     /// Sets the calls of the frame.
     pub(super) fn schedule(&mut self, calls: &[SolverCall]) {
-        let multiple = |a: u64, b: u64| (a / greatest_common_divisor(a, b)).saturating_mul(b);
-        let parts = calls.iter().map(|call| u64::from(call.substeps.max(1))).fold(1, multiple);
+        let parts = calls.iter().map(|call| u64::from(call.substeps.max(1))).fold(1, least_common_multiple);
         self.parts = parts.min(MAX_PARTS) as u32;
     }
 
@@ -98,6 +97,11 @@ impl Track {
         }
         Some(after.moved_back(before, f64::from(time - from) / f64::from(to - from)))
     }
+}
+
+/// The least common multiple of two numbers, or the largest number if it is larger.
+pub fn least_common_multiple(a: u64, b: u64) -> u64 {
+    (a / greatest_common_divisor(a, b).max(1)).saturating_mul(b)
 }
 
 fn greatest_common_divisor(a: u64, b: u64) -> u64 {
