@@ -19,6 +19,7 @@
 //! | field nodes                                          | `fields.rs`                        |
 //! | particles that fill a box or a mesh                  | `fill.rs`                          |
 //! | initial positions, velocities, and the solve order   | `initial_state.rs`                 |
+//! | state that depends on the past                       | [`past_state`]                     |
 //! | the input of a frame                                 | `frame.rs`                         |
 //! | meshes, and how many points they have                | `geometry.rs`                      |
 //! | mesh sequences and blends                            | `animated_mesh.rs`                 |
@@ -61,6 +62,7 @@ mod objects;
 mod particle_expressions;
 mod particle_ramps;
 mod particles;
+pub mod past_state;
 mod perturbation;
 mod program;
 mod recorded;

@@ -12,6 +12,7 @@ use crate::graph::{Graph, NodeId};
 use crate::mesh::{area, is_open};
 
 use super::compiler::Compiler;
+use super::past_state::{MANUAL, NO_ANGLE, NO_TENSION, tracks_volume, yields_bends, yields_stretch};
 use super::program::EvaluationInterval;
 use super::sources::ClothSource;
 use super::units::CLASSIC;
@@ -19,16 +20,11 @@ use super::units::CLASSIC;
 /// `bendSolver: simple` and `flipTracking`.
 const SIMPLE: Choice = Choice(0);
 const FLIP_TRACKING: Choice = Choice(2);
-/// `pressureMethod: manualPressureSetting`.
-const MANUAL: Choice = Choice(0);
 /// `evaluationOrder: parallel`.
 const PARALLEL: Choice = Choice(1);
 /// `scalingRelation`.
 const LINK: Choice = Choice(0);
 const OBJECT_SPACE: Choice = Choice(1);
-/// `restitutionTension` from which on nothing stays, and `restitutionAngle` in degrees: Maya's defaults.
-const NO_TENSION: f64 = 1000.0;
-const NO_ANGLE: f64 = 360.0;
 /// Pa·s for a `pressureDamping` of 1: it takes up a pressure of 1 at one volume in 1/24 s.
 const DAMPING: f64 = PASCALS_PER_PRESSURE / 24.0;
 /// Faces of the mesh for which Object Space means the same as Link: those of a polyPlane as Maya makes it.
@@ -37,29 +33,26 @@ const REFERENCE_FACES: f64 = 100.0;
 /// The lists that a cloth needs beyond links; `lists` has the others.
 pub(super) fn lists(graph: &Graph, cloth: NodeId, lists: ClothLists) -> ClothLists {
     use n_cloth::{
-        BEND_ANGLE_DROPOFF, BEND_ANGLE_SCALE, BEND_SOLVER, DEFORM_RESISTANCE, PRESSURE, PRESSURE_METHOD,
-        RESTITUTION_ANGLE, RESTITUTION_TENSION, RIGIDITY, USE_POLYGON_SHELLS,
+        BEND_ANGLE_DROPOFF, BEND_ANGLE_SCALE, BEND_SOLVER, DEFORM_RESISTANCE, PRESSURE, RIGIDITY,
+        USE_POLYGON_SHELLS,
     };
     let node = graph.node(cloth);
     let used = |key: &Key<f64>| graph.is_ever_nonzero(cloth, key);
-    let below = |key: &Key<f64>, limit: f64| graph.changes(cloth, key) || node.get(key) < limit;
-    let yields_bends = below(&RESTITUTION_ANGLE, NO_ANGLE);
     let scaled = graph.changes(cloth, &BEND_ANGLE_SCALE) || node.get(&BEND_ANGLE_SCALE) != 1.0;
     let shape = used(&RIGIDITY) || used(&DEFORM_RESISTANCE);
-    let by_volume = graph.changes(cloth, &PRESSURE_METHOD) || node.get(&PRESSURE_METHOD) != MANUAL;
-    let pressure = by_volume || used(&PRESSURE);
+    let pressure = tracks_volume(graph, cloth) || used(&PRESSURE);
     ClothLists {
         signed_bend: lists.bend && node.get(&BEND_SOLVER) != SIMPLE,
         bend_angles: lists.bend
             && (used(&BEND_ANGLE_DROPOFF)
                 || scaled
-                || yields_bends
+                || yields_bends(graph, cloth)
                 || graph.changes(cloth, &BEND_SOLVER)
                 || node.get(&BEND_SOLVER) == FLIP_TRACKING),
         pressure,
         shape,
         shells: shape && node.get(&USE_POLYGON_SHELLS),
-        plastic: lists.stretch && below(&RESTITUTION_TENSION, NO_TENSION),
+        plastic: lists.stretch && yields_stretch(graph, cloth),
         ..lists
     }
 }

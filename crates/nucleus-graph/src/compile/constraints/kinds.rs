@@ -11,6 +11,7 @@ use crate::graph::{EvalContext, NodeId};
 
 /// Kinds by their number in `constraintType`.
 pub(super) const TRANSFORM: i32 = 0;
+const POINT_TO_POINT: i32 = 1;
 pub(super) const POINT_TO_SURFACE: i32 = 2;
 pub(super) const SLIDE_ON_SURFACE: i32 = 3;
 pub(super) const WELD_BORDERS: i32 = 4;
@@ -24,6 +25,12 @@ pub(super) const EXCLUDE_PAIRS: i32 = 9;
 pub(super) fn excludes(kind: i32) -> bool {
     matches!(kind, DISABLE_COLLISION | EXCLUDE_PAIRS)
 }
+
+/// Whether links of a kind have lengths of their own.
+pub(in crate::compile) fn has_lengths(kind: i32) -> bool {
+    matches!(kind, POINT_TO_POINT | POINT_TO_SURFACE | MATCH)
+}
+
 /// `constraintRelation: objectToConstraint`.
 pub(super) const TO_SPACE: i32 = 0;
 /// `constraintMethod: weld`.
@@ -31,7 +38,7 @@ pub(super) const WELD: i32 = 0;
 /// `connectionMethod: within max distance`.
 pub(super) const WITHIN_MAX_DISTANCE: i32 = 1;
 /// `connectionUpdate: per frame`.
-const PER_FRAME: i32 = 1;
+pub(in crate::compile) const PER_FRAME: i32 = 1;
 
 /// The values that each kind writes, where they differ from the defaults of the node. `type: transform` means pins
 /// unless one of [`SOFT`] is given.
