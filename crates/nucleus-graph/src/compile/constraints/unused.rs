@@ -37,6 +37,8 @@ struct Properties {
     has_no_reach: bool,
     /// The falloff over the distance is the same everywhere.
     has_no_dropoff: bool,
+    /// A surface tears at its own edges, not between pairs.
+    tears: bool,
     /// No link ever breaks.
     never_breaks: bool,
     /// Links are welds, and resistances are stiffnesses.
@@ -132,6 +134,12 @@ static UNUSED: &[Unused] = &[
         when: |constraint| constraint.has_no_reach,
         because: "`connectionMethod` joins pairs at any distance",
         help: "write `connectionMethod: withinMaxDistance`, or let `connectionDensityRange` fall with the distance",
+    },
+    Unused {
+        rows: &[&con::CONNECTION_METHOD.row, &con::MAX_DISTANCE.row],
+        when: |constraint| constraint.tears,
+        because: "a tearable surface joins the points that it splits, whatever their distance",
+        help: "leave it out; `components` names where it tears",
     },
     Unused {
         rows: &[&con::DROPOFF.row, &con::DROPOFF_DISTANCE.row],
@@ -260,6 +268,7 @@ impl Compiler<'_> {
                 && is_paired
                 && never(&con::CONNECTION_METHOD, kinds::WITHIN_MAX_DISTANCE)
                 && Ramp::new(&density_range).is_constant(),
+            tears: values.kind == kinds::TEARABLE,
             has_no_dropoff: Ramp::new(&values.strength_dropoff()).is_constant(),
             never_breaks: !can_break(&values, members),
             is_rigid,

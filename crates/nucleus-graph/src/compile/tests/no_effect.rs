@@ -20,6 +20,7 @@ fn an_attribute_that_a_constraint_of_its_kind_does_not_use_is_a_warning() {
     let both = r#"components: ["cloth1", "cloth2"]"#;
     let hold = "points are held at their own places, not in pairs";
     let no_length = "its links have no length: points are held at their own places";
+    let tears = "a tearable surface joins the points that it splits, whatever their distance";
     for (attributes, expected) in [
         (
             r#"components: ["cloth1"], strength: 1, restLengthMethod: constant, restLength: 0.3"#.to_owned(),
@@ -72,6 +73,11 @@ fn an_attribute_that_a_constraint_of_its_kind_does_not_use_is_a_warning() {
         (
             format!("type: pointToSurface, {both}, maxDistance: 0.5"),
             vec![("maxDistance", "`connectionMethod` joins pairs at any distance")],
+        ),
+        (
+            r#"type: tearableSurface, components: ["cloth1"], connectionMethod: nearestPairs, maxDistance: 0.5"#
+                .to_owned(),
+            vec![("connectionMethod", tears), ("maxDistance", tears)],
         ),
         (
             format!("type: pointToPoint, {both}, dropoffDistance: 5, dropoff: 0.5"),
