@@ -33,26 +33,14 @@ impl Compiler<'_> {
             true => Vec::new(),
             false => self.start_velocities(id, id, points, velocities)?,
         };
-        let graph = &self.scene.graph;
-        let lists = ClothLists {
-            air: graph.is_ever_nonzero(id, &n_particle::DRAG)
-                && graph.is_ever_nonzero(self.program.node, &nucleus::AIR_DENSITY),
-            self_collision: ever_self_collides(graph, id),
-            ..ClothLists::NONE
-        };
+        let lists = self.particle_lists(id);
         let mass = self.start.get(id, &n_particle::POINT_MASS);
         let start = Start { velocities, ..Start::default() };
         let emitters = self.emitters(id, ClothId(self.program.model.cloths().len() as u32));
         let most = recorded.as_ref().map_or(0, RecordedPoints::most);
         let particles = self.births_and_deaths(id, (&places, most), &emitters)?;
         let varies = particles.is_some();
-        let masses = self.particle_numbers(id, &particle::MASS0, &places)?;
-        if let Some(bad) = masses.iter().find(|kilograms| **kilograms <= 0.0) {
-            let name = self.scene.graph.node(id).name();
-            let message = format!("`mass0` of `{name}` must be above 0, but is {bad}");
-            self.findings.error(&self.place(id, &particle::MASS0.row), message).help("in kilograms");
-            return None;
-        }
+        let masses = self.particle_masses(id, &places)?;
         let vertex_maps = VertexMaps {
             mass: masses.iter().map(|kilograms| kilograms / mass).collect(),
             ..VertexMaps::default()
@@ -70,14 +58,7 @@ impl Compiler<'_> {
                     false => masses.iter().sum(),
                 };
                 self.add_object(id, kind, points, Faces::default(), kilograms);
-                let radius = self.start.get(id, &n_particle::RADIUS);
-                let surface = [&n_particle::THRESHOLD, &n_particle::BLOBBY_RADIUS_SCALE];
-                let surface = surface.map(|key| self.start.get(id, key));
-                let rest_distance = is_liquid(&self.start, id).then(|| rest_distance(&self.start, id));
-                if let Some(object) = self.objects.last_mut() {
-                    (object.radius, object.surface, object.varies) = (Some(radius), surface, varies);
-                    object.rest_distance = rest_distance;
-                }
+                self.describe_particles(id, varies);
             }
             Err(error) => return self.report_refused(id, id, &error),
         }
@@ -97,6 +78,40 @@ impl Compiler<'_> {
         };
         self.program.cloths.push(source);
         Some(())
+    }
+
+    /// The lists that particles need.
+    fn particle_lists(&self, id: NodeId) -> ClothLists {
+        let graph = &self.scene.graph;
+        ClothLists {
+            air: graph.is_ever_nonzero(id, &n_particle::DRAG)
+                && graph.is_ever_nonzero(self.program.node, &nucleus::AIR_DENSITY),
+            self_collision: ever_self_collides(graph, id),
+            ..ClothLists::NONE
+        }
+    }
+
+    /// The masses of particles at these places in kilograms, if they have any of their own; `None` after an error, which is
+    /// reported.
+    fn particle_masses(&mut self, id: NodeId, places: &[Vector3<f64>]) -> Option<Vec<f64>> {
+        let masses = self.particle_numbers(id, &particle::MASS0, places)?;
+        let Some(bad) = masses.iter().find(|kilograms| **kilograms <= 0.0) else { return Some(masses) };
+        let name = self.scene.graph.node(id).name();
+        let message = format!("`mass0` of `{name}` must be above 0, but is {bad}");
+        self.findings.error(&self.place(id, &particle::MASS0.row), message).help("in kilograms");
+        None
+    }
+
+    /// Sets how the object that was added last is drawn and its surface computed.
+    fn describe_particles(&mut self, id: NodeId, varies: bool) {
+        let radius = self.start.get(id, &n_particle::RADIUS);
+        let surface = [&n_particle::THRESHOLD, &n_particle::BLOBBY_RADIUS_SCALE];
+        let surface = surface.map(|key| self.start.get(id, key));
+        let rest_distance = is_liquid(&self.start, id).then(|| rest_distance(&self.start, id));
+        if let Some(object) = self.objects.last_mut() {
+            (object.radius, object.surface, object.varies) = (Some(radius), surface, varies);
+            object.rest_distance = rest_distance;
+        }
     }
 
     /// What particles need that are born, die or differ from each other, where there are any; `None` after an error, which

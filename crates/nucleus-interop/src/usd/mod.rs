@@ -120,6 +120,24 @@ fn write_object<R: Read + Seek>(
     if have_looks {
         write_looks(clip, object, stage)?;
     }
+    let extents = write_points(clip, object, is_mesh, stage, progress)?;
+    if is_mesh {
+        write_normals(clip, object, stage, progress)?;
+    }
+    write_orientations(clip, object, stage)?;
+    write_velocities(clip, object, stage)?;
+    stage.end();
+    Ok(extents)
+}
+
+/// Writes the positions and the extent of an object; returns its extent at each sample. This is half of its progress.
+fn write_points<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    is_mesh: bool,
+    stage: &mut impl Stage,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<Extent>, ExportError> {
     let samples = clip.samples().to_vec();
     let steps = samples.len() as f64;
     let mut extents = Vec::with_capacity(samples.len());
@@ -139,30 +157,37 @@ fn write_object<R: Read + Seek>(
         stage.sample(sample.frame_time, &Value::Vec3s(extent));
     }
     stage.end_samples();
-    if is_mesh {
-        let mut vertices = Vertices::of(clip.object_at(object, 0)?, &[]);
-        let changes = clip.mesh_changes(object);
-        let are_split = vertices.are_split();
-        let each = if are_split { "faceVarying" } else { "vertex" };
-        stage.begin_samples(&Attribute::of("normal3f[]", "normals").interpolated(each));
-        for (index, sample) in samples.iter().enumerate() {
-            let positions = clip.positions(object, index)?;
-            if changes.contains(&index) {
-                vertices = Vertices::smooth(&clip.object_at(object, index)?.faces, positions.len());
-            }
-            let mut normals = vertices.normals(&vertices.gather(&positions));
-            if are_split {
-                normals = vertices.faces.corners().iter().map(|&vertex| normals[vertex as usize]).collect();
-            }
-            stage.sample(sample.frame_time, &Value::Vec3s(&normals));
-            progress(0.5 + 0.5 * (index + 1) as f64 / steps);
-        }
-        stage.end_samples();
-    }
-    write_orientations(clip, object, stage)?;
-    write_velocities(clip, object, stage)?;
-    stage.end();
     Ok(extents)
+}
+
+/// Writes the normals of a mesh: the other half of its progress.
+fn write_normals<R: Read + Seek>(
+    clip: &mut Clip<R>,
+    object: usize,
+    stage: &mut impl Stage,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExportError> {
+    let samples = clip.samples().to_vec();
+    let steps = samples.len() as f64;
+    let mut vertices = Vertices::of(clip.object_at(object, 0)?, &[]);
+    let changes = clip.mesh_changes(object);
+    let are_split = vertices.are_split();
+    let each = if are_split { "faceVarying" } else { "vertex" };
+    stage.begin_samples(&Attribute::of("normal3f[]", "normals").interpolated(each));
+    for (index, sample) in samples.iter().enumerate() {
+        let positions = clip.positions(object, index)?;
+        if changes.contains(&index) {
+            vertices = Vertices::smooth(&clip.object_at(object, index)?.faces, positions.len());
+        }
+        let mut normals = vertices.normals(&vertices.gather(&positions));
+        if are_split {
+            normals = vertices.faces.corners().iter().map(|&vertex| normals[vertex as usize]).collect();
+        }
+        stage.sample(sample.frame_time, &Value::Vec3s(&normals));
+        progress(0.5 + 0.5 * (index + 1) as f64 / steps);
+    }
+    stage.end_samples();
+    Ok(())
 }
 
 /// Writes the numbers of particles, so that other tools can identify each over time: their places, where none is born or

@@ -49,6 +49,42 @@ fn all_shifted(channels: &[Channel; 3], by: [f64; 3]) -> [Channel; 3] {
     [0, 1, 2].map(|k| shifted(&channels[k], by[k]))
 }
 
+/// The parts of Maya's matrix that our transforms have not: pivots in scene units, angles in degrees, shear.
+struct Pivots {
+    rotate: [f64; 3],
+    rotate_translate: [f64; 3],
+    scale: [f64; 3],
+    scale_translate: [f64; 3],
+    axis: [f64; 3],
+    orient: [f64; 3],
+    shear: [f64; 3],
+}
+
+impl Pivots {
+    fn are_zero(&self) -> bool {
+        let Self { rotate, rotate_translate, scale, scale_translate, axis, orient, shear } = *self;
+        is_zero(&[rotate, rotate_translate, scale, scale_translate, axis, orient, shear])
+    }
+
+    /// Those of a joint, whose matrix has no pivots.
+    fn of_joint(self) -> Self {
+        let zero = [0.0; 3];
+        Self { rotate: zero, rotate_translate: zero, scale: zero, scale_translate: zero, ..self }
+    }
+}
+
+fn is_zero(all: &[[f64; 3]]) -> bool {
+    all.iter().flatten().all(|x| *x == 0.0)
+}
+
+fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] + b[k])
+}
+
+fn minus(a: [f64; 3]) -> [f64; 3] {
+    a.map(|x| -x)
+}
+
 impl Importer<'_> {
     /// Places our node as the transform, or the node with a transform of its own, is in Maya.
     pub(super) fn place(&mut self, from: NodeId, to: OwnId) {
@@ -58,31 +94,11 @@ impl Importer<'_> {
             self.hang(to, self.placed_parent(from));
             return;
         }
-        let start = self.frames[0] as f64;
         let parts = self.parts(from);
-        let inherits = scene.switch_or(from, names::INHERITS, true);
-        let mut parent = if inherits { self.placed_parent(from) } else { None };
-        if let Some(offset) =
-            scene.matrix(from, names::OFFSET, None).map(Matrix::of_rows).filter(|m| !m.is_identity())
-        {
-            let chain = self.add_transform(to, "offset");
-            self.hang(chain, parent);
-            parent = Some(self.set_matrix(chain, &offset, "offset2"));
-        }
-        let vector = |vector| self.values.lengths(from, vector, start);
-        let (rp, rpt, sp, spt) = (
-            vector(names::ROTATE_PIVOT),
-            vector(names::ROTATE_PIVOT_TRANSLATE),
-            vector(names::SCALE_PIVOT),
-            vector(names::SCALE_PIVOT_TRANSLATE),
-        );
-        let axis = self.values.degrees(from, names::ROTATE_AXIS, start);
-        let is_joint = scene.kind(from) == "joint";
-        let orient = if is_joint { self.values.degrees(from, names::JOINT_ORIENT, start) } else { [0.0; 3] };
-        let shear = self.values.vector(from, names::SHEAR, [0.0; 3], start);
+        let parent = self.parent_with_offset(from, to);
+        let pivots = self.pivots(from);
         let compensation = self.compensation(from);
-        let is_zero = |all: &[[f64; 3]]| all.iter().flatten().all(|x| *x == 0.0);
-        if is_zero(&[rp, rpt, sp, spt, axis, orient, shear]) && compensation.is_none() {
+        if pivots.are_zero() && compensation.is_none() {
             self.hang(to, parent);
             self.set_parts(from, to, &parts);
             return;
@@ -92,50 +108,108 @@ impl Importer<'_> {
             self.place_folded(from, to, parent, &parts);
             return;
         }
-        let [rp, rpt, sp, spt] = if is_joint { [[0.0; 3]; 4] } else { [rp, rpt, sp, spt] };
-        let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
-        let minus = |a: [f64; 3]| a.map(|x| -x);
-        let order = parts.order;
-        let mut outer = all_shifted(&parts.translate, add(rp, rpt));
+        let is_joint = scene.kind(from) == "joint";
+        let pivots = if is_joint { pivots.of_joint() } else { pivots };
+        self.place_as_chain(to, parent, parts, &pivots, compensation);
+    }
+
+    /// The parent of a placed node: that in Maya, with the offset matrix of the node as a transform of its own.
+    fn parent_with_offset(&mut self, from: NodeId, to: OwnId) -> Option<OwnId> {
+        let inherits = self.scene.switch_or(from, names::INHERITS, true);
+        let parent = if inherits { self.placed_parent(from) } else { None };
+        let offset = self.scene.matrix(from, names::OFFSET, None).map(Matrix::of_rows);
+        let Some(offset) = offset.filter(|offset| !offset.is_identity()) else { return parent };
+        let chain = self.add_transform(to, "offset");
+        self.hang(chain, parent);
+        Some(self.set_matrix(chain, &offset, "offset2"))
+    }
+
+    fn pivots(&self, from: NodeId) -> Pivots {
+        let start = self.frames[0] as f64;
+        let vector = |vector| self.values.lengths(from, vector, start);
+        let is_joint = self.scene.kind(from) == "joint";
+        Pivots {
+            rotate: vector(names::ROTATE_PIVOT),
+            rotate_translate: vector(names::ROTATE_PIVOT_TRANSLATE),
+            scale: vector(names::SCALE_PIVOT),
+            scale_translate: vector(names::SCALE_PIVOT_TRANSLATE),
+            axis: self.values.degrees(from, names::ROTATE_AXIS, start),
+            orient: if is_joint { self.values.degrees(from, names::JOINT_ORIENT, start) } else { [0.0; 3] },
+            shear: self.values.vector(from, names::SHEAR, [0.0; 3], start),
+        }
+    }
+
+    /// Places a node below a transform for each part of Maya's matrix that ours have not, because keys move some of them.
+    fn place_as_chain(
+        &mut self,
+        to: OwnId,
+        parent: Option<OwnId>,
+        parts: Parts,
+        pivots: &Pivots,
+        compensation: Option<[Channel; 3]>,
+    ) {
+        let mut outer = (parent, all_shifted(&parts.translate, add(pivots.rotate, pivots.rotate_translate)));
         if let Some(scale) = compensation {
-            let chain = self.add_transform(to, "segment");
-            self.hang(chain, parent);
-            self.set_channels(chain, &transform::TRANSLATE.row, outer, 0.0);
-            self.set_channels(chain, &transform::SCALE.row, scale, 1.0);
-            (parent, outer) = (Some(chain), fixed([0.0; 3]));
+            outer = self.add_outer(to, "segment", outer, (&transform::SCALE.row, scale, 1.0));
         }
-        if orient != [0.0; 3] {
-            let chain = self.add_transform(to, "orient");
-            self.hang(chain, parent);
-            self.set_channels(chain, &transform::TRANSLATE.row, outer, 0.0);
-            self.set_channels(chain, &transform::ROTATE.row, fixed(orient), 0.0);
-            (parent, outer) = (Some(chain), fixed([0.0; 3]));
+        if pivots.orient != [0.0; 3] {
+            let orient = (&transform::ROTATE.row, fixed(pivots.orient), 0.0);
+            outer = self.add_outer(to, "orient", outer, orient);
         }
+        let (parent, translate) = outer;
         let turn = self.add_transform(to, "rotate");
         self.hang(turn, parent);
-        self.set_channels(turn, &transform::TRANSLATE.row, outer, 0.0);
+        self.set_channels(turn, &transform::TRANSLATE.row, translate, 0.0);
         self.set_channels(turn, &transform::ROTATE.row, parts.rotate, 0.0);
-        self.set_order(turn, order);
+        self.set_order(turn, parts.order);
         let mut inner = turn;
-        if axis != [0.0; 3] {
+        if pivots.axis != [0.0; 3] {
             inner = self.add_transform(to, "axis");
             self.hang(inner, Some(turn));
-            self.set_channels(inner, &transform::ROTATE.row, fixed(axis), 0.0);
+            self.set_channels(inner, &transform::ROTATE.row, fixed(pivots.axis), 0.0);
         }
-        let mut between = add(add(sp, spt), minus(rp));
-        if !is_zero(&[shear]) {
+        let mut between = add(add(pivots.scale, pivots.scale_translate), minus(pivots.rotate));
+        if !is_zero(&[pivots.shear]) {
             let sheared = self.add_transform(to, "shear");
             self.hang(sheared, Some(inner));
-            let matrix = Matrix::shearing(shear).then(&Matrix::translation(between));
+            let matrix = Matrix::shearing(pivots.shear).then(&Matrix::translation(between));
             (inner, between) = (self.set_matrix(sheared, &matrix, "shear2"), [0.0; 3]);
         }
-        let scale = if sp == [0.0; 3] { to } else { self.add_transform(to, "scale") };
-        self.hang(scale, Some(inner));
-        self.set_channels(scale, &transform::TRANSLATE.row, fixed(between), 0.0);
-        self.set_channels(scale, &transform::SCALE.row, parts.scale, 1.0);
-        if scale != to {
-            self.hang(to, Some(scale));
-            self.set_channels(to, &transform::TRANSLATE.row, fixed(minus(sp)), 0.0);
+        self.place_scaled(to, inner, between, parts.scale, pivots.scale);
+    }
+
+    /// Adds a transform with one of its channels set, which takes over the translation; the parent of the next and what is left
+    /// of the translation.
+    fn add_outer(
+        &mut self,
+        to: OwnId,
+        suffix: &str,
+        (parent, translate): (Option<OwnId>, [Channel; 3]),
+        (row, channels, default): (&'static Attribute, [Channel; 3], f64),
+    ) -> (Option<OwnId>, [Channel; 3]) {
+        let chain = self.add_transform(to, suffix);
+        self.hang(chain, parent);
+        self.set_channels(chain, &transform::TRANSLATE.row, translate, 0.0);
+        self.set_channels(chain, row, channels, default);
+        (Some(chain), fixed([0.0; 3]))
+    }
+
+    /// Places a node below `parent`, scaled about a pivot.
+    fn place_scaled(
+        &mut self,
+        to: OwnId,
+        parent: OwnId,
+        translate: [f64; 3],
+        scale: [Channel; 3],
+        pivot: [f64; 3],
+    ) {
+        let scaled = if pivot == [0.0; 3] { to } else { self.add_transform(to, "scale") };
+        self.hang(scaled, Some(parent));
+        self.set_channels(scaled, &transform::TRANSLATE.row, fixed(translate), 0.0);
+        self.set_channels(scaled, &transform::SCALE.row, scale, 1.0);
+        if scaled != to {
+            self.hang(to, Some(scaled));
+            self.set_channels(to, &transform::TRANSLATE.row, fixed(minus(pivot)), 0.0);
         }
     }
 

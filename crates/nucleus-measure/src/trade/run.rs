@@ -1,7 +1,7 @@
 //! One run: figures per frame, and the trajectory of all cloth points.
 
 use nalgebra::Vector3;
-use nucleus_core::{ClothId, Real, StateView};
+use nucleus_core::{ClothId, Real, StateView, StepReport};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{ObjectKind, Program};
 use serde::{Deserialize, Serialize};
@@ -116,20 +116,8 @@ pub fn run_setting<R: Real>(
     let mut contact = Contact::default();
     let before = skip(&mut simulation, skipped, &mut contact, should_continue)?;
     all_points(&simulation, &mut points);
-    let mut run = Run {
-        setting: *setting,
-        bits,
-        skipped,
-        asked,
-        frames: Vec::with_capacity(asked),
-        start_energy: before.kinetic + potential_energy(&points),
-        contact,
-        pairs: 0,
-        queries: 0,
-        outline: None,
-        hash: String::new(),
-        against: String::new(),
-    };
+    let start_energy = before.kinetic + potential_energy(&points);
+    let mut run = Run { contact, start_energy, ..Run::empty(setting, bits, [skipped, asked]) };
     let mut expected = Vec::new();
     for frame in 0..if before.is_finite { asked } else { 0 } {
         if !should_continue() {
@@ -141,16 +129,9 @@ pub fn run_setting<R: Real>(
         }
         all_points(&simulation, &mut points);
         let strain = benchmark.strain(&points);
-        let divergence = reference.filter(|reference| frame < reference.frames()).map(|reference| {
-            reference.frame(frame, &mut expected);
-            let deviation = distance(&points, &expected, benchmark.size);
-            [deviation.rms, deviation.max]
-        });
-        run.contact.add(&report);
-        run.pairs += report.candidate_pairs;
-        run.queries += u64::from(report.broad_phases);
+        run.count(&report);
         run.frames.push(Frame {
-            divergence,
+            divergence: divergence(benchmark, &points, reference, frame, &mut expected),
             strain: strain.p99.max(0.0),
             max_strain: strain.max.max(0.0),
             kinetic: report.kinetic_energy,
@@ -166,11 +147,57 @@ pub fn run_setting<R: Real>(
         run.outline = benchmark.outline_of(&points, &expected);
     }
     run.hash = format!("{:016x}", simulation.solver().state_hash());
+    Some((run, RunStates { trajectory, end: end_positions(&simulation) }))
+}
+
+impl Run {
+    /// A run without frames yet, of which it skips and compares so many.
+    fn empty(setting: &Setting, bits: u32, [skipped, asked]: [usize; 2]) -> Self {
+        Self {
+            setting: *setting,
+            bits,
+            skipped,
+            asked,
+            frames: Vec::with_capacity(asked),
+            start_energy: 0.0,
+            contact: Contact::default(),
+            pairs: 0,
+            queries: 0,
+            outline: None,
+            hash: String::new(),
+            against: String::new(),
+        }
+    }
+
+    /// Adds the counts of a frame.
+    fn count(&mut self, report: &StepReport) {
+        self.contact.add(report);
+        self.pairs += report.candidate_pairs;
+        self.queries += u64::from(report.broad_phases);
+    }
+}
+
+/// Distance of points from a frame of the reference, root mean square and largest, if it has the frame.
+fn divergence(
+    benchmark: &Benchmark,
+    points: &[Vector3<f64>],
+    reference: Option<&Trajectory>,
+    frame: usize,
+    expected: &mut Vec<Vector3<f64>>,
+) -> Option<[f64; 2]> {
+    let reference = reference.filter(|reference| frame < reference.frames())?;
+    reference.frame(frame, expected);
+    let deviation = distance(points, expected, benchmark.size);
+    Some([deviation.rms, deviation.max])
+}
+
+/// The positions of all objects, in scene units.
+fn end_positions<R: Real>(simulation: &Simulation<R>) -> Vec<Vec<[f32; 3]>> {
     let mut end = vec![Vec::new(); simulation.objects().len()];
     for (object, out) in simulation.objects().iter().zip(&mut end) {
-        object_positions(&simulation, object, out);
+        object_positions(simulation, object, out);
     }
-    Some((run, RunStates { trajectory, end }))
+    end
 }
 
 /// The state before the compared frames.

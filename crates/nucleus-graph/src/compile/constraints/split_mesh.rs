@@ -44,77 +44,26 @@ impl Tearing {
     /// Splits a mesh. `tears` gives the constraint that can tear an edge at one of its ends.
     pub(super) fn new(faces: &Faces, points: usize, tears: impl Fn([u32; 2], u32) -> Option<NodeId>) -> Self {
         // Corners of faces round a point stay together where an edge between them cannot tear.
-        let corners = faces.corners();
-        let mut parents: Vec<usize> = (0..corners.len()).collect();
-        let mut found: BTreeMap<[u32; 2], Vec<[usize; 4]>> = BTreeMap::new();
-        let mut first = 0;
-        for face in faces.iter() {
-            for k in 0..face.len() {
-                let at = |step: usize| first + (k + step) % face.len();
-                let (a, b) = (face[k], face[(k + 1) % face.len()]);
-                let behind = [at(face.len() - 1), at(2)];
-                let ends = match a < b {
-                    true => [at(0), at(1), behind[0], behind[1]],
-                    false => [at(1), at(0), behind[1], behind[0]],
-                };
-                found.entry([a.min(b), a.max(b)]).or_default().push(ends);
-            }
-            first += face.len();
-        }
-        let mut torn: Vec<(NodeId, [u32; 2], [usize; 2])> = Vec::new();
-        let mut creased: Vec<(NodeId, [[usize; 4]; 2])> = Vec::new();
-        for (edge, sides) in &found {
-            for pair in sides.windows(2) {
-                if let Some(constraint) = edge.iter().find_map(|&end| tears(*edge, end)) {
-                    creased.push((constraint, [pair[0], pair[1]]));
-                }
-                for end in 0..2 {
-                    let ours = [pair[0][end], pair[1][end]];
-                    match tears(*edge, edge[end]) {
-                        Some(constraint) => torn.push((constraint, *edge, ours)),
-                        None => {
-                            let [x, y] = ours.map(|corner| root(&mut parents, corner));
-                            parents[x.max(y)] = x.min(y);
-                        }
-                    }
-                }
-            }
-        }
-        // The first group of corners of a point keeps it, every other gets a twin.
-        let (mut twins, mut own) = (Vec::new(), vec![u32::MAX; corners.len()]);
-        let mut taken = vec![false; points];
-        for corner in 0..corners.len() {
-            let group = root(&mut parents, corner);
-            if own[group] == u32::MAX {
-                let point = corners[corner];
-                let is_taken = std::mem::replace(&mut taken[point as usize], true);
-                own[group] = if is_taken { (points + twins.len()) as u32 } else { point };
-                if is_taken {
-                    twins.push(point);
-                }
-            }
-        }
-        let mut split = Faces::default();
-        let mut first = 0;
-        for face in faces.iter() {
-            let corners: Vec<u32> = (0..face.len()).map(|k| own[root(&mut parents, first + k)]).collect();
-            split.push(&corners);
-            first += face.len();
-        }
-        let mut seams = Vec::new();
-        for (constraint, edge, sides) in torn {
-            let points = sides.map(|corner| own[root(&mut parents, corner)]);
-            if points[0] != points[1] {
-                seams.push(Seam { constraint, points, edge });
-            }
-        }
-        let mut point = |corner: usize| own[root(&mut parents, corner)];
+        let mut parents: Vec<usize> = (0..faces.corners().len()).collect();
+        let TornEdges { torn, creased } = join_corners(faces, &mut parents, tears);
+        let groups: Vec<usize> = (0..parents.len()).map(|corner| root(&mut parents, corner)).collect();
+        let (own, twins) = points_of_corners(faces.corners(), points, &groups);
+        let seam = |(constraint, edge, sides): (NodeId, [u32; 2], [usize; 2])| Seam {
+            constraint,
+            points: sides.map(|corner| own[corner]),
+            edge,
+        };
         let crease = |(constraint, sides): (NodeId, [[usize; 4]; 2])| Crease {
             constraint,
-            sides: sides.map(|side| side.map(&mut point)),
+            sides: sides.map(|side| side.map(|corner| own[corner])),
         };
-        let creases = creased.into_iter().map(crease).collect();
-        Self { points, twins, split, seams, creases }
+        Self {
+            points,
+            twins,
+            split: with_corners(faces, &own),
+            seams: torn.into_iter().map(seam).filter(|seam| seam.points[0] != seam.points[1]).collect(),
+            creases: creased.into_iter().map(crease).collect(),
+        }
     }
 
     /// A column of points, with twins where their originals are.
@@ -155,6 +104,88 @@ impl Tearing {
         };
         points.iter().flat_map(of).collect()
     }
+}
+
+/// What can tear, in corners of faces.
+struct TornEdges {
+    /// Ends of edges, with their corners on both sides.
+    torn: Vec<(NodeId, [u32; 2], [usize; 2])>,
+    /// Edges, with the corners of both faces.
+    creased: Vec<(NodeId, [[usize; 4]; 2])>,
+}
+
+/// The edges of a mesh, each with its faces in order: the corners at its ends, the lower first, and the next one behind each.
+fn sides_of_edges(faces: &Faces) -> BTreeMap<[u32; 2], Vec<[usize; 4]>> {
+    let mut found: BTreeMap<[u32; 2], Vec<[usize; 4]>> = BTreeMap::new();
+    let mut first = 0;
+    for face in faces.iter() {
+        for k in 0..face.len() {
+            let at = |step: usize| first + (k + step) % face.len();
+            let (a, b) = (face[k], face[(k + 1) % face.len()]);
+            let behind = [at(face.len() - 1), at(2)];
+            let ends = match a < b {
+                true => [at(0), at(1), behind[0], behind[1]],
+                false => [at(1), at(0), behind[1], behind[0]],
+            };
+            found.entry([a.min(b), a.max(b)]).or_default().push(ends);
+        }
+        first += face.len();
+    }
+    found
+}
+
+/// Joins the corners on both sides of an edge at the ends where it cannot tear.
+fn join_corners(
+    faces: &Faces,
+    parents: &mut [usize],
+    tears: impl Fn([u32; 2], u32) -> Option<NodeId>,
+) -> TornEdges {
+    let mut edges = TornEdges { torn: Vec::new(), creased: Vec::new() };
+    for (edge, sides) in sides_of_edges(faces) {
+        for pair in sides.windows(2) {
+            if let Some(constraint) = edge.iter().find_map(|&end| tears(edge, end)) {
+                edges.creased.push((constraint, [pair[0], pair[1]]));
+            }
+            for end in 0..2 {
+                let ours = [pair[0][end], pair[1][end]];
+                match tears(edge, edge[end]) {
+                    Some(constraint) => edges.torn.push((constraint, edge, ours)),
+                    None => {
+                        let [x, y] = ours.map(|corner| root(parents, corner));
+                        parents[x.max(y)] = x.min(y);
+                    }
+                }
+            }
+        }
+    }
+    edges
+}
+
+/// The point of each corner, and the originals of twins: the first group of corners of a point keeps it, every other gets a twin.
+fn points_of_corners(corners: &[u32], points: usize, groups: &[usize]) -> (Vec<u32>, Vec<u32>) {
+    let (mut twins, mut of_group) = (Vec::new(), vec![u32::MAX; corners.len()]);
+    let mut taken = vec![false; points];
+    for (&point, &group) in corners.iter().zip(groups) {
+        if of_group[group] == u32::MAX {
+            let is_taken = std::mem::replace(&mut taken[point as usize], true);
+            of_group[group] = if is_taken { (points + twins.len()) as u32 } else { point };
+            if is_taken {
+                twins.push(point);
+            }
+        }
+    }
+    (groups.iter().map(|&group| of_group[group]).collect(), twins)
+}
+
+/// The same faces with other points at their corners.
+fn with_corners(faces: &Faces, own: &[u32]) -> Faces {
+    let mut split = Faces::default();
+    let mut first = 0;
+    for face in faces.iter() {
+        split.push(&own[first..first + face.len()]);
+        first += face.len();
+    }
+    split
 }
 
 fn root(parents: &mut [usize], mut at: usize) -> usize {
