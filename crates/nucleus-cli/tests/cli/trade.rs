@@ -295,11 +295,13 @@ fn a_sweep_without_a_recommendation_exits_with_1_whatever_was_asked() {
 #[test]
 fn particles_whose_motions_diverge_get_no_recommendation_and_no_file() {
     let folder = folder();
-    // Beads that bounce off each other: the references differ by more than a bead from the first hit on.
-    let beads = r#"Scene(time: (start: 1, end: 24, fps: 24), nodes: {
+    // Elastic beads that bounce off each other: the references differ by more than a bead after a few hits.
+    let beads = r#"Scene(time: (start: 1, end: 48, fps: 24), nodes: {
         "n": nucleus(spaceScale: 0.01, usePlane: true),
-        "beads": nParticle(position0: [(0, 8, 0), (0.3, 11, 0), (0, 14, 0.3), (0.1, 17, 0)], radius: 1.3,
-            pointMass: 0.003, friction: 0.2, drag: 0, bounce: 0.5)})"#;
+        "beads": nParticle(
+            position0: [(0, 8, 0), (0.3, 11, 0), (0, 14, 0.3), (0.1, 17, 0), (0, 20, 0.2), (0.2, 23, 0.1), (0, 26, 0),
+                (0.1, 29, 0.2)],
+            radius: 1.3, pointMass: 0.003, friction: 0, drag: 0, bounce: 1)})"#;
     fs::write(folder.path().join("beads.ron"), beads).unwrap();
     let sweep = ["trade", "beads.ron", "--evaluations", "6,12", "--substeps", "1"];
     for error in ["1%", "0.1%"] {

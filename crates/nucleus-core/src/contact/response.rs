@@ -6,7 +6,7 @@
 //! Maya, independent of the step length.
 
 use crate::input::frame::COUNT_PERIOD;
-use crate::math::{Real, add, dot, max, min, scale, sub};
+use crate::math::{Real, add, clamp_length, dot, max, min, scale, sub};
 use crate::state::State;
 
 /// Speed in m/s at which contact resolves a depth that existed before the step.
@@ -172,6 +172,8 @@ const TOUCHING_GAP: f64 = 1e-3;
 pub struct Restitution<R> {
     /// Coefficient of restitution, 0 to 1.
     pub coefficient: R,
+    /// The sum of both frictions.
+    pub friction: R,
     /// Approach speed in m/s below which there is none: resting contacts would jitter on the speed that gravity
     /// adds in each step.
     pub min_speed: R,
@@ -254,12 +256,18 @@ impl<R: Real> Restitution<R> {
     /// The largest gap that counts as touching, in contact thicknesses.
     pub const MAX_TOUCHING_GAP: f64 = 1.0 + TOUCHING_GAP;
 
+    /// That at a point that touches.
+    pub fn at(&self, touch: &TouchingPoint<R>) -> Self {
+        Self { coefficient: touch.coefficient, friction: touch.friction, ..*self }
+    }
+
     /// Whether a gap counts as touching.
     pub fn touches(gap: R, thickness: R) -> bool {
         gap <= thickness * R::from_f64(Self::MAX_TOUCHING_GAP)
     }
 
-    /// The velocity after collision with a surface of this normal and velocity.
+    /// The velocity after collision with a surface of this normal and velocity. Friction takes its share of the rebound too: with
+    /// what the pushes of the step had, it is Coulomb's share of the whole impulse, wherever in the step the collision was.
     pub fn velocity_after(&self, impact: &Impact<R>, normal: [R; 3], surface: [R; 3]) -> [R; 3] {
         let speed = dot(normal, sub(impact.velocity, surface));
         let before = speed - impact.push_speed(normal, self.h);
@@ -267,7 +275,10 @@ impl<R: Real> Restitution<R> {
         if -before <= self.min_speed || speed >= after {
             return impact.velocity;
         }
-        std::array::from_fn(|axis| impact.velocity[axis] + normal[axis] * (after - speed))
+        let rebound = after - speed;
+        let sliding = sub(sub(impact.velocity, surface), scale(normal, speed));
+        let stopped = clamp_length(sliding, self.friction * rebound);
+        std::array::from_fn(|axis| impact.velocity[axis] + normal[axis] * rebound - stopped[axis])
     }
 }
 

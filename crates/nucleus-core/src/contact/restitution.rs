@@ -18,7 +18,7 @@ pub fn apply_restitution<R: Real>(pass: &mut ContactPass<'_, R>) {
     // Twice the speed that gravity adds in a step.
     let h = pass.schedule.h;
     let min_speed = R::from_f64(2.0 * pass.frame.gravity.norm() * h);
-    let restitution = Restitution { coefficient: R::ZERO, min_speed, h: R::from_f64(h) };
+    let restitution = Restitution { coefficient: R::ZERO, friction: R::ZERO, min_speed, h: R::from_f64(h) };
     let mut touches = std::mem::take(&mut pass.contact.bouncing);
     for cloth in 0..pass.model.cloths.len() {
         // A rigid body that does not bounce stops as a whole too.
@@ -123,7 +123,7 @@ fn bounce<R: Real>(state: &mut State<R>, touch: &TouchingPoint<R>, restitution: 
     if touch.coefficient <= R::ZERO || state.displacement[row].0[3] <= R::ZERO {
         return;
     }
-    let restitution = Restitution { coefficient: touch.coefficient, ..restitution };
+    let restitution = restitution.at(touch);
     let [x, y, z] = restitution.velocity_after(&Impact::of(state, row), touch.normal, touch.surface);
     state.velocity[row] = Row4([x, y, z, R::ZERO]);
 }

@@ -57,7 +57,12 @@ impl<'a, R: Real> FreePass<'a, R> {
             plane: contact.ground.in_step(now.span).zip(contact.ground_materials[cloth]),
             has_colliders: contact.has_collider_material(cloth),
             sweeps: now.schedule.passes.iter().filter(|pass| **pass == Pass::ColliderContact).count(),
-            restitution: Restitution { coefficient: R::ZERO, min_speed, h: R::from_f64(h) },
+            restitution: Restitution {
+                coefficient: R::ZERO,
+                friction: R::ZERO,
+                min_speed,
+                h: R::from_f64(h),
+            },
             frame: now.frame.duration,
         }
     }

@@ -309,7 +309,8 @@ impl<R: Real> Run<'_, R> {
         if !touches || coefficient <= R::ZERO || row.0[3] <= R::ZERO {
             return;
         }
-        let restitution = Restitution { coefficient, ..self.pass.restitution };
+        let friction = material.impact_friction_at(&self.pass.contact.material_maps, of_point);
+        let restitution = Restitution { coefficient, friction, ..self.pass.restitution };
         let surface = ground.plane.velocity(point, row.xyz(), restitution.h);
         // SAFETY: the point belongs to this task.
         #[allow(unsafe_code)]

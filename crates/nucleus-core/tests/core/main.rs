@@ -14,6 +14,7 @@ mod features;
 mod fields;
 mod folds;
 mod free_points;
+mod friction;
 mod inlined_kernels;
 mod inside_colliders;
 mod invalid_input;

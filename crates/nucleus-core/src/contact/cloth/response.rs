@@ -317,6 +317,7 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let (normal, weights, distance) = shortest_line(self.end_positions(step));
         let thickness = self.thickness_at(step.materials, step.material_maps, &weights);
         let bounce = material.bounce_at(step.material_maps, self.contact_points(&weights));
+        let friction = material.impact_friction_at(step.material_maps, self.contact_points(&weights));
         if bounce <= R::ZERO || !Restitution::touches(distance, thickness) {
             return false;
         }
@@ -330,7 +331,11 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             velocity: self.relative(&weights, |point| velocity(point).xyz()),
         };
         let gained = sub(
-            Restitution { coefficient: bounce, ..restitution }.velocity_after(&impact, normal, [R::ZERO; 3]),
+            Restitution { coefficient: bounce, friction, ..restitution }.velocity_after(
+                &impact,
+                normal,
+                [R::ZERO; 3],
+            ),
             impact.velocity,
         );
         if gained == [R::ZERO; 3] {

@@ -124,7 +124,7 @@ impl<R: Real> NearPoints<R> {
                 if touch.coefficient <= R::ZERO || row.0[3] <= R::ZERO {
                     continue;
                 }
-                let restitution = Restitution { coefficient: touch.coefficient, ..restitution };
+                let restitution = restitution.at(&touch);
                 // SAFETY: the point belongs to this task.
                 #[allow(unsafe_code)]
                 unsafe {

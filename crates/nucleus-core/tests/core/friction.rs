@@ -1,0 +1,71 @@
+//! Coulomb friction in a rebound.
+
+use crate::scenes::{LINKS, Vec3, cuboid, frame, grid, ground, physical, still};
+use nucleus_core::{
+    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Faces, FrameInput, Mass, ModelBuilder,
+    Solver, Start, Surface,
+};
+
+const FIRST: ClothId = ClothId(0);
+const THICKNESS: f64 = 0.05;
+
+/// A cloth that starts with a velocity.
+fn thrown(surface: Surface, lists: ClothLists, velocity: Vec3) -> Cloth {
+    let velocities = vec![velocity; surface.positions.len()];
+    let start = Start { velocities, ..Start::default() };
+    Cloth { start, ..Cloth::new(surface, Mass::PerPoint(0.1), lists) }
+}
+
+fn bead(place: Vec3) -> Surface {
+    Surface { positions: vec![place], faces: Faces::default() }
+}
+
+fn solver(cloth: Cloth, collider: Option<Surface>) -> Solver<f64> {
+    let mut builder = ModelBuilder::new();
+    builder.cloth(cloth).expect("a good mesh");
+    collider
+        .into_iter()
+        .for_each(|surface| builder.collider(Collider { surface }).map(drop).expect("a good mesh"));
+    Solver::new(builder, 2)
+}
+
+/// The velocity with which an object that came at (2, -4, 0) m/s leaves a ground or a box with its top at zero.
+fn rebound(surface: Surface, lists: ClothLists, on_box: bool) -> Vec3 {
+    let floor = cuboid(Vec3::new(-9.0, -1.0, -9.0), Vec3::new(9.0, 0.0, 9.0));
+    let mut solver = solver(thrown(surface, lists, Vec3::new(2.0, -4.0, 0.0)), on_box.then_some(floor));
+    let settings = ClothFrame { thickness: THICKNESS, friction: 0.1, bounce: 0.6, ..still() };
+    let input = FrameInput {
+        gravity: Vec3::zeros(),
+        cloths: vec![settings],
+        colliders: if on_box {
+            vec![ColliderFrame { collide: true, friction: 0.0, ..ColliderFrame::default() }]
+        } else {
+            Vec::new()
+        },
+        plane: (!on_box).then(|| ground(0.0)),
+        ..frame(3, physical(96.0))
+    };
+    (0..4).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    let mut all = Vec::new();
+    solver.velocities(FIRST, 1.0, &mut all);
+    Vec3::from(all[0].map(f64::from))
+}
+
+#[test]
+fn friction_of_a_rebound_is_coulombs_share_of_its_impulse_wherever_in_the_step_it_is() {
+    let expected = Vec3::new(2.0 - 0.1 * 1.6 * 4.0, 0.6 * 4.0, 0.0);
+    for on_box in [false, true] {
+        for height in (0..8).map(|k| 0.2 + 0.0017 * f64::from(k)) {
+            let mut sheet = grid(3, 3, Vec3::x() * 0.4, Vec3::z() * 0.4);
+            sheet.positions.iter_mut().for_each(|place| place.y += height);
+            let point = bead(Vec3::new(0.13, height, 0.21));
+            let of_bead = rebound(point, ClothLists::NONE, on_box);
+            assert!((of_bead - expected).norm() < 1e-5, "on a box {on_box}, from {height} m: {of_bead}");
+            // Edges of a sheet that cross edges of a box share its impulse, and their friction is found one after the other.
+            let (of_sheet, most) = (rebound(sheet, LINKS, on_box), if on_box { 0.05 } else { 1e-5 });
+            assert!((of_sheet - expected).norm() < most, "on a box {on_box}, from {height} m: {of_sheet}");
+        }
+    }
+}
