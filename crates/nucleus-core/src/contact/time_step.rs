@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use nalgebra::Vector3;
 
 use crate::contact::collider::ColliderState;
+use crate::contact::collider::turning::Turning;
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::math::{Real, Row4, add};
@@ -176,6 +177,8 @@ pub struct ColliderStep<'a, R> {
     pub anchors: &'a [[f64; 3]],
     /// The collider's points at the start and at the end of the frame.
     pub collider: [&'a [Point]; 2],
+    /// How the collider turns in the frame.
+    pub turning: &'a Turning,
     /// Start and end of the step, as shares of the frame.
     pub time: TimeInterval,
     /// The candidate interval, as shares of the frame.
@@ -401,6 +404,7 @@ impl<R: Real> ColliderStepArgs<'_, R> {
             start,
             anchors,
             collider: [&collider.start, &collider.end],
+            turning: &collider.turning,
             time: self.time,
             interval: self.interval,
             shares: self.time.ends().map(|time| R::from_f64(self.interval.share_of(time))),

@@ -1,9 +1,10 @@
-//! Coulomb friction in a rebound.
+//! Coulomb friction where the surface turns, and in a rebound.
 
-use crate::scenes::{LINKS, Vec3, cuboid, frame, grid, ground, physical, still};
+use crate::scenes::{LINKS, Vec3, cuboid, frame, grid, ground, physical, sphere, still};
+use nalgebra::Rotation3;
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Faces, FrameInput, Mass, ModelBuilder,
-    Solver, Start, Surface,
+    Solver, Start, StateView, Surface,
 };
 
 const FIRST: ClothId = ClothId(0);
@@ -68,4 +69,33 @@ fn friction_of_a_rebound_is_coulombs_share_of_its_impulse_wherever_in_the_step_i
             assert!((of_sheet - expected).norm() < most, "on a box {on_box}, from {height} m: {of_sheet}");
         }
     }
+}
+
+/// How far a bead that grips a collider is, after it has turned by a radian, from where it would be as a part of it.
+fn lag(collider: Surface, start: Vec3) -> f64 {
+    let frames = 24;
+    let mut solver = solver(thrown(bead(start), ClothLists::NONE, Vec3::zeros()), Some(collider.clone()));
+    let turned = |k: i32| Rotation3::from_axis_angle(&Vec3::z_axis(), f64::from(k) / f64::from(frames));
+    let settings = ClothFrame { thickness: THICKNESS, friction: 1.0, stickiness: 1.0, ..still() };
+    for k in 1..=frames {
+        let at = |k| collider.positions.iter().map(|place| turned(k) * place).collect::<Vec<_>>();
+        let moving =
+            ColliderFrame { collide: true, start: at(k - 1), end: at(k), ..ColliderFrame::default() };
+        let input = FrameInput {
+            cloths: vec![settings.clone()],
+            colliders: vec![moving],
+            ..frame(3, physical(96.0))
+        };
+        solver.step(&input, &mut ());
+    }
+    (solver.point(FIRST, 0) - turned(frames) * start).norm()
+}
+
+#[test]
+fn what_grips_a_turning_collider_turns_with_it() {
+    let block = cuboid(Vec3::new(-0.5, -0.5, -0.5), Vec3::new(0.5, 0.5, 0.5));
+    let on_block = lag(block, Vec3::new(0.1, 0.5 + THICKNESS, 0.2));
+    let on_ball = lag(sphere(0.5, Vec3::zeros()), Vec3::y() * (0.5 + THICKNESS));
+    // It would lag by its distance times the angle, 5 cm, if it followed the surface below it.
+    assert!(on_block < 1e-3 && on_ball < 1e-3, "{on_block} and {on_ball}");
 }

@@ -25,6 +25,11 @@ impl AffineMotion {
         self.linear * (place - self.origin) + self.travel
     }
 
+    /// The change of directions: what they are multiplied by.
+    pub fn linear(&self) -> &Matrix3<f64> {
+        &self.linear
+    }
+
     /// That of a collider between two times of the frame; `None` where it deforms otherwise, or is a line.
     pub fn of(collider: &ColliderState, times: TimeInterval) -> Option<Self> {
         let (ColliderState { start, end, .. }, [from, to]) = (collider, times.ends());

@@ -13,6 +13,7 @@ use nalgebra::Vector3;
 use crate::bytes::{Encode, Reader};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::separation::{best_plane, separated};
+use crate::contact::collider::turning::Turning;
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase;
@@ -38,7 +39,7 @@ pub struct ColliderContact<R, const N: usize, const M: usize> {
     plane: [[R; N]; 2],
     /// Weights of the cloth points at the contact.
     pub(super) weights: [R; N],
-    /// Motion of the collider at the contact over the whole frame, in metres.
+    /// Motion of the collider at the contact over the whole frame, in metres, as if it reached to the cloth.
     pub(super) surface_motion: [R; 3],
     /// Displacement of the contact when the plane was set.
     plane_origin: [R; 3],
@@ -353,6 +354,16 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         }
     }
 
+    /// How far what keeps its thickness from the surface moves along it in the frame because the surface turns, in metres.
+    #[inline]
+    fn turn(&self, step: &ColliderStep<'_, R>, ends: &[[Point; M]; 2]) -> Point {
+        if matches!(step.turning, Turning::None) {
+            return Point::zeros();
+        }
+        let normal = Point::from(self.normal.map(R::to_f64));
+        step.turning.of_normal(normal, ends) * self.rest_gap(step, self.weights).to_f64()
+    }
+
     /// Sets the weights of the contact, and the place where its plane was set.
     #[inline]
     fn set_plane_origin(&mut self, (b, c): ([f64; N], [f64; M]), step: &ColliderStep<'_, R>) {
@@ -363,7 +374,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         }
         let motion = interpolate(ends[1], c) - interpolate(ends[0], c);
         self.weights = b.map(R::from_f64);
-        self.surface_motion = [motion.x, motion.y, motion.z].map(R::from_f64);
+        self.surface_motion = (motion + self.turn(step, &ends)).map(R::from_f64).into();
         let contact = self.contact_displacement(step.displacements(self.points));
         let time = R::from_f64(step.time.end);
         self.plane_origin = sub(contact, scale(self.surface_motion, time));

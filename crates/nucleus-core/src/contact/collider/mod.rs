@@ -25,6 +25,7 @@
 //! | points that leave one while another is in their way | [`pinched`] |
 //! | surfaces that face each other with cloth between them | [`facing`] |
 //! | the motion of what it carries along | [`affine_motion`] |
+//! | how what grips it turns with it | [`turning`] |
 //! | the passes of a time step, over each cloth's lists of contacts | [`pass`], [`lists`] |
 
 pub mod active_set;
@@ -53,11 +54,13 @@ mod selected;
 pub mod separation;
 pub mod start_gaps;
 pub mod sweep;
+pub mod turning;
 
 use nalgebra::Vector3;
 
 use crate::bytes::checkpoint_struct;
 use crate::contact::bvh::{Aabb, Bvh};
+use crate::contact::collider::turning::Turning;
 use crate::model::ColliderModel;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
@@ -76,6 +79,8 @@ pub struct ColliderState {
     pub max_travel: f64,
     /// The mean motion of its points in this frame, in metres.
     pub mean_travel: Vector3<f64>,
+    /// How its surface turns in this frame.
+    pub turning: Turning,
     /// Low and high corner of the bounding box at the start and at the end of the frame.
     corners: [[Vector3<f64>; 2]; 2],
     /// The time that the solver has reached, as a share of the frame.
@@ -92,7 +97,7 @@ checkpoint_struct!([] ColliderState {
     columns: [start, end],
     values: [now],
     parts: [],
-    rebuilt: [moves, max_travel, mean_travel, corners, boxes, bvh, fitted_interval],
+    rebuilt: [moves, max_travel, mean_travel, turning, corners, boxes, bvh, fitted_interval],
 });
 
 /// The boxes of an object's elements.
@@ -122,6 +127,7 @@ impl ColliderState {
             moves: false,
             max_travel: 0.0,
             mean_travel: Vector3::zeros(),
+            turning: Turning::None,
             corners: [corners(positions); 2],
             now: 0.0,
             boxes: Boxes::default(),
@@ -148,6 +154,7 @@ impl ColliderState {
             let sum: Vector3<f64> = self.start.iter().zip(&self.end).map(|(start, end)| end - start).sum();
             self.mean_travel = sum / self.start.len().max(1) as f64;
             self.corners = [corners(&self.start), corners(&self.end)];
+            self.turning = Turning::of(self);
         }
     }
 

@@ -1,0 +1,87 @@
+//! How the surface of a collider turns in a frame: what grips it at a distance turns with it.
+//!
+//! Contact keeps cloth at a distance from the surface. If friction compared its motion with that of the surface below it, a band
+//! on a turning wheel would lag by its distance times the angle.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::contact::collider::ColliderState;
+use crate::contact::collider::affine_motion::AffineMotion;
+use crate::contact::depenetration::unit_normal;
+use crate::schedule::TimeInterval;
+
+type Point = Vector3<f64>;
+
+/// The turn of a collider's surface in a frame.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Turning {
+    /// It is at rest, or moves without turning.
+    #[default]
+    None,
+    /// All of it turns alike: the change of a direction is linear in it.
+    Whole(Matrix3<f64>),
+    /// It deforms, and each face turns by itself.
+    ByFace,
+}
+
+/// Change of a direction below which a collider does not turn: rounding of the positions of its points.
+const NO_TURN: f64 = 1e-9;
+
+impl Turning {
+    /// That of a collider in its current frame.
+    pub fn of(collider: &ColliderState) -> Self {
+        if !collider.moves {
+            return Self::None;
+        }
+        match AffineMotion::of(collider, TimeInterval { start: 0.0, end: 1.0 }) {
+            Some(motion) if motion.linear().norm() <= NO_TURN => Self::None,
+            Some(motion) => Self::Whole(*motion.linear()),
+            None => Self::ByFace,
+        }
+    }
+
+    /// The change of the unit normal of a contact in the frame, without its part along the normal, given the element of the
+    /// collider at the start and at the end of the frame. Of a collider that deforms that of edges and corners is not known:
+    /// zero.
+    pub fn of_normal<const M: usize>(&self, normal: Point, [start, end]: &[[Point; M]; 2]) -> Point {
+        let change = match self {
+            Self::None => return Point::zeros(),
+            Self::Whole(linear) => linear * normal,
+            Self::ByFace if M == 3 => {
+                let [before, after] = [start, end].map(|face| unit_normal([face[0], face[1], face[M - 1]]));
+                (after - before) * normal.dot(&before).signum()
+            }
+            Self::ByFace => return Point::zeros(),
+        };
+        change - normal * normal.dot(&change)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Rotation3;
+
+    use super::*;
+
+    fn corners() -> [Point; 3] {
+        [Point::zeros(), Point::x(), -Point::z()]
+    }
+
+    #[test]
+    fn a_face_that_turns_by_itself_turns_its_normal_on_both_sides() {
+        let turn = Rotation3::from_axis_angle(&Point::z_axis(), 0.01);
+        let ends = [corners(), corners().map(|corner| turn * corner + Point::y())];
+        for side in [1.0, -1.0] {
+            let change = Turning::ByFace.of_normal(Point::y() * side, &ends);
+            assert!((change - Point::new(-0.01f64.sin() * side, 0.0, 0.0)).norm() < 1e-12, "{change}");
+        }
+    }
+
+    #[test]
+    fn what_moves_or_grows_without_turning_does_not_turn_a_normal() {
+        let ends = [corners(), corners().map(|corner| corner * 2.0 + Point::x())];
+        assert_eq!(Turning::ByFace.of_normal(Point::y(), &ends), Point::zeros());
+        let grown = Turning::Whole(Matrix3::identity());
+        assert_eq!(grown.of_normal(Point::y(), &ends), Point::zeros());
+    }
+}
