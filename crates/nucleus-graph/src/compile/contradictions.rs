@@ -1,7 +1,7 @@
 //! Settings that have no effect because another setting switches them off, or that count as less than they say: a warning
 //! says which.
 
-use crate::attributes::{Choice, Key, n_base, nucleus, particle};
+use crate::attributes::{Choice, Key, Value, n_base, nucleus, particle};
 use crate::graph::{Graph, NodeId, Setting};
 
 use super::compiler::Compiler;
@@ -23,7 +23,9 @@ impl Compiler<'_> {
             .flat_map(|Dependency { rows, need, help }| rows.iter().map(move |&row| (row, need, *help)));
         for (row, need, help) in dependencies {
             let is_own = node.node_type().attribute(row.name).is_some_and(|own| own == row);
-            if !is_own || !node.settings().contains_key(row.name) {
+            // A switch that is off needs nothing to be off.
+            let is_off = |setting: &Setting| *setting == Setting::Fixed(Value::Bool(false));
+            if !is_own || node.settings().get(row.name).is_none_or(is_off) {
                 continue;
             }
             let because = match need {

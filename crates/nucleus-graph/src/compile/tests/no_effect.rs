@@ -212,6 +212,17 @@ fn a_direction_of_zero_that_switches_gravity_wind_or_the_floor_off_is_a_warning(
 }
 
 #[test]
+fn a_switch_that_is_off_needs_nothing_else_to_be_off() {
+    let of_field = |attributes: &str| {
+        let field = format!(r#""drag": dragField(target: "cloth1", {attributes})"#);
+        warnings(&(sheet("", "") + &field))
+    };
+    assert_eq!(of_field("useMaxDistance: false"), Vec::<String>::new());
+    assert_eq!(of_field("useMaxDistance: true, maxDistance: 2"), Vec::<String>::new());
+    assert!(of_field("useMaxDistance: true, maxDistance: 0")[0].contains("`maxDistance` is 0"));
+}
+
+#[test]
 fn attributes_that_are_read_once_cannot_be_keyed() {
     let at_start = |nodes: &str| {
         let text = format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}})");
