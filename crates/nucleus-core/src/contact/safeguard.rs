@@ -181,7 +181,8 @@ fn freeze<R: Real>(pass: &mut ContactPass<'_, R>) {
 fn begin_freezing<R: Real>(pass: &mut ContactPass<'_, R>) {
     let ContactSystem { carriers, collider_states, cloth_contacts, .. } = &mut *pass.contact;
     carriers.clear();
-    carriers.extend(collider_states.iter().map(|collider| AffineMotion::of(collider, pass.span.times())));
+    carriers
+        .extend(collider_states.iter().map(|collider| AffineMotion::of(collider.ends(), pass.span.times())));
     let Some(ClothContacts { frozen, .. }) = cloth_contacts else { return };
     frozen.clear();
     let is_pinned = |row: &Row4<R>| row.0[3] <= R::ZERO;

@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::contact::collider::ColliderState;
 use crate::schedule::TimeInterval;
 
 /// The motion of every place in a time step, in metres: linear in its position.
@@ -30,9 +29,10 @@ impl AffineMotion {
         &self.linear
     }
 
-    /// That of a collider between two times of the frame; `None` where it deforms otherwise, or is a line.
-    pub fn of(collider: &ColliderState, times: TimeInterval) -> Option<Self> {
-        let (ColliderState { start, end, .. }, [from, to]) = (collider, times.ends());
+    /// That of a collider between two times of the frame, given its points at the start and at the end of the frame; `None` where it
+    /// deforms otherwise, or is a line.
+    pub fn of([start, end]: [&[Vector3<f64>]; 2], times: TimeInterval) -> Option<Self> {
+        let [from, to] = times.ends();
         let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
         let [centre, end_centre] = [mean(start), mean(end)];
         let (mut spread, mut mixed) = (Matrix3::zeros(), Matrix3::zeros());
@@ -88,6 +88,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::contact::collider::ColliderState;
 
     type Point = Vector3<f64>;
 
@@ -113,7 +114,7 @@ mod tests {
             [from, to] in proptest::array::uniform2(0.0..1.0f64),
         ) {
             let state = moved(&points, turn, travel);
-            let motion = AffineMotion::of(&state, TimeInterval { start: from, end: to });
+            let motion = AffineMotion::of(state.ends(), TimeInterval { start: from, end: to });
             prop_assume!(motion.is_some());
             for k in 0..points.len() as u32 {
                 let expected = state.point(k, to) - state.point(k, from);
@@ -128,7 +129,7 @@ mod tests {
             let state = moved(&points, turn, Point::zeros());
             let place = Point::new(0.3, above, 0.6);
             let expected = Rotation3::new(turn) * place;
-            let found = AffineMotion::of(&state, TimeInterval { start: 0.0, end: 1.0 }).map(|motion| place + motion.at(place));
+            let found = AffineMotion::of(state.ends(), TimeInterval { start: 0.0, end: 1.0 }).map(|motion| place + motion.at(place));
             prop_assert!(found.is_some_and(|found| (found - expected).norm() < 1e-9), "{found:?}");
         }
     }
@@ -140,6 +141,6 @@ mod tests {
         let mut end = points;
         end[3].y = 0.5;
         state.begin_frame(&points, &end);
-        assert!(AffineMotion::of(&state, TimeInterval { start: 0.0, end: 1.0 }).is_none());
+        assert!(AffineMotion::of(state.ends(), TimeInterval { start: 0.0, end: 1.0 }).is_none());
     }
 }

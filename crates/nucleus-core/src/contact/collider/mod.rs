@@ -154,8 +154,13 @@ impl ColliderState {
             let sum: Vector3<f64> = self.start.iter().zip(&self.end).map(|(start, end)| end - start).sum();
             self.mean_travel = sum / self.start.len().max(1) as f64;
             self.corners = [corners(&self.start), corners(&self.end)];
-            self.turning = Turning::of(self);
+            self.turning = if self.moves { Turning::of(self.ends()) } else { Turning::None };
         }
+    }
+
+    /// Its points at the start and at the end of the frame, in metres.
+    pub fn ends(&self) -> [&[Vector3<f64>]; 2] {
+        [&self.start, &self.end]
     }
 
     /// Low and high corner of its bounding box at a time of the frame, in metres.

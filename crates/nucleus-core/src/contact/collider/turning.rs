@@ -5,9 +5,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::contact::collider::ColliderState;
 use crate::contact::collider::affine_motion::AffineMotion;
-use crate::contact::depenetration::unit_normal;
 use crate::schedule::TimeInterval;
 
 type Point = Vector3<f64>;
@@ -28,12 +26,9 @@ pub enum Turning {
 const NO_TURN: f64 = 1e-9;
 
 impl Turning {
-    /// That of a collider in its current frame.
-    pub fn of(collider: &ColliderState) -> Self {
-        if !collider.moves {
-            return Self::None;
-        }
-        match AffineMotion::of(collider, TimeInterval { start: 0.0, end: 1.0 }) {
+    /// That of a collider, given its points at the start and at the end of the frame.
+    pub fn of(ends: [&[Point]; 2]) -> Self {
+        match AffineMotion::of(ends, TimeInterval { start: 0.0, end: 1.0 }) {
             Some(motion) if motion.linear().norm() <= NO_TURN => Self::None,
             Some(motion) => Self::Whole(*motion.linear()),
             None => Self::ByFace,
@@ -48,13 +43,19 @@ impl Turning {
             Self::None => return Point::zeros(),
             Self::Whole(linear) => linear * normal,
             Self::ByFace if M == 3 => {
-                let [before, after] = [start, end].map(|face| unit_normal([face[0], face[1], face[M - 1]]));
+                let [before, after] = [start, end].map(|face| unit_normal(face));
                 (after - before) * normal.dot(&before).signum()
             }
             Self::ByFace => return Point::zeros(),
         };
         change - normal * normal.dot(&change)
     }
+}
+
+/// The unit normal of a face; zero where it has no area.
+fn unit_normal(corners: &[Point]) -> Point {
+    let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+    normal.try_normalize(0.0).unwrap_or_default()
 }
 
 #[cfg(test)]

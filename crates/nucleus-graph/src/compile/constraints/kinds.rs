@@ -27,7 +27,7 @@ pub(super) fn excludes(kind: i32) -> bool {
 }
 
 /// Whether links of a kind have lengths of their own.
-pub(in crate::compile) fn has_lengths(kind: i32) -> bool {
+pub(crate) fn has_lengths(kind: i32) -> bool {
     matches!(kind, POINT_TO_POINT | POINT_TO_SURFACE | MATCH)
 }
 
@@ -38,7 +38,7 @@ pub(super) const WELD: i32 = 0;
 /// `connectionMethod: within max distance`.
 pub(super) const WITHIN_MAX_DISTANCE: i32 = 1;
 /// `connectionUpdate: per frame`.
-pub(in crate::compile) const PER_FRAME: i32 = 1;
+pub(crate) const PER_FRAME: i32 = 1;
 
 /// The values that each kind writes, where they differ from the defaults of the node. `type: transform` means pins
 /// unless one of [`SOFT`] is given.
