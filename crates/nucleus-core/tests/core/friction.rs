@@ -80,11 +80,8 @@ fn lag(collider: Surface, start: Vec3) -> f64 {
         let at = |k| collider.positions.iter().map(|place| turned(k) * place).collect::<Vec<_>>();
         let moving =
             ColliderFrame { collide: true, start: at(k - 1), end: at(k), ..ColliderFrame::default() };
-        let input = FrameInput {
-            cloths: vec![settings.clone()],
-            colliders: vec![moving],
-            ..frame(3, physical(96.0))
-        };
+        let input =
+            FrameInput { cloths: vec![settings], colliders: vec![moving], ..frame(3, physical(96.0)) };
         solver.step(&input, &mut ());
     }
     (solver.point(FIRST, 0) - turned(frames) * start).norm()
