@@ -23,8 +23,11 @@ impl Compiler<'_> {
             .flat_map(|Dependency { rows, need, help }| rows.iter().map(move |&row| (row, need, *help)));
         for (row, need, help) in dependencies {
             let is_own = node.node_type().attribute(row.name).is_some_and(|own| own == row);
-            // A switch that is off needs nothing to be off.
-            let is_off = |setting: &Setting| *setting == Setting::Fixed(Value::Bool(false));
+            // A switch that is off by default needs nothing to be off.
+            let off = Value::Bool(false);
+            let is_off = |setting: &Setting| {
+                row.default.as_ref() == Some(&off) && *setting == Setting::Fixed(Value::Bool(false))
+            };
             if !is_own || node.settings().get(row.name).is_none_or(is_off) {
                 continue;
             }
