@@ -38,7 +38,8 @@ pub fn find_intersections<R: Real>(
             (0..cloths.len()).for_each(|cloth| search.find_with(group as u32, cloth, found));
         }
     });
-    let known = std::mem::take(&mut untangling.intersections);
+    note_known(untangling, filter);
+    untangling.intersections.clear();
     found.iter().for_each(|found| untangling.intersections.extend_from_slice(found));
     if untangling.any() {
         untangling.mark_neighbourhood(cloths);
@@ -48,19 +49,27 @@ pub fn find_intersections<R: Real>(
         untangling.is_on_wrong_side.fill(false);
         untangling.sides.clear();
     }
-    count_released(&known, &untangling.intersections, filter)
+    count_released(untangling, filter)
+}
+
+/// Notes the intersections of the last search, where a weld has released any pairs.
+fn note_known(untangling: &mut Untangling, filter: &PairFilter) {
+    let Untangling { intersections, known, .. } = untangling;
+    known.clear();
+    if filter.has_released() {
+        known.extend(intersections.iter().map(|known| (known.edge, known.face)));
+        known.sort_unstable();
+    }
 }
 
 /// The number of released pairs that intersect and did not at the last search.
-fn count_released(known: &[Intersection], found: &[Intersection], filter: &PairFilter) -> u64 {
+fn count_released(untangling: &Untangling, filter: &PairFilter) -> u64 {
     if !filter.has_released() {
         return 0;
     }
-    let pair = |intersection: &Intersection| (intersection.edge, intersection.face);
-    let mut known: Vec<_> = known.iter().map(pair).collect();
-    known.sort_unstable();
-    let released = found.iter().filter(|found| filter.are_released(&found.edge, &found.face));
-    released.filter(|found| known.binary_search(&pair(found)).is_err()).count() as u64
+    let Untangling { intersections, known, .. } = untangling;
+    let released = intersections.iter().filter(|found| filter.are_released(&found.edge, &found.face));
+    released.filter(|found| known.binary_search(&(found.edge, found.face)).is_err()).count() as u64
 }
 
 struct IntersectionSearch<'a, R> {

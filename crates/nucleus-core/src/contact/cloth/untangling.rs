@@ -68,13 +68,15 @@ pub struct Untangling {
     pub is_search_due: Vec<bool>,
     /// The faces at each edge, sorted; built when the first intersection is found.
     pub(super) wings: Vec<Wing>,
+    /// Edge and face of each intersection of the last search, sorted: a buffer.
+    pub(super) known: Vec<([u32; 2], [u32; 3])>,
 }
 
 checkpoint_struct!([] Untangling {
     columns: [near_contour, is_on_wrong_side, is_search_due],
     values: [intersections, cloth_pairs, sides],
     parts: [],
-    rebuilt: [wings],
+    rebuilt: [wings, known],
 });
 
 impl Untangling {
@@ -88,6 +90,7 @@ impl Untangling {
             cloth_pairs: Vec::new(),
             is_search_due: vec![true; cloths],
             wings: Vec::new(),
+            known: Vec::new(),
         }
     }
 
