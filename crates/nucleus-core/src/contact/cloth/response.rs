@@ -317,7 +317,6 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
         let (normal, weights, distance) = shortest_line(self.end_positions(step));
         let thickness = self.thickness_at(step.materials, step.material_maps, &weights);
         let bounce = material.bounce_at(step.material_maps, self.contact_points(&weights));
-        let friction = material.impact_friction_at(step.material_maps, self.contact_points(&weights));
         if bounce <= R::ZERO || !Restitution::touches(distance, thickness) {
             return false;
         }
@@ -330,14 +329,9 @@ impl<R: Real, const N: usize, const M: usize> ClothContact<R, N, M> {
             displacement: self.relative(&weights, |point| step.row(point).xyz()),
             velocity: self.relative(&weights, |point| velocity(point).xyz()),
         };
-        let gained = sub(
-            Restitution { coefficient: bounce, friction, ..restitution }.velocity_after(
-                &impact,
-                normal,
-                [R::ZERO; 3],
-            ),
-            impact.velocity,
-        );
+        let friction = material.impact_friction_at(step.material_maps, self.contact_points(&weights));
+        let restitution = Restitution { coefficient: bounce, friction, ..restitution };
+        let gained = sub(restitution.velocity_after(&impact, normal, [R::ZERO; 3]), impact.velocity);
         if gained == [R::ZERO; 3] {
             return false;
         }
