@@ -27,6 +27,11 @@ pub struct BoundaryElements {
     live: usize,
 }
 
+/// The unit normal of a triangle; zero where it has no area.
+pub fn unit_normal([a, b, c]: [Vector3<f64>; 3]) -> Vector3<f64> {
+    (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
+}
+
 /// Sorts triangles so that any aligned run of a power of two of them is spatially compact.
 pub fn sort_spatially(triangles: &[[u32; 3]], place: impl Fn(u32) -> Vector3<f64>) -> Vec<[u32; 3]> {
     let centre = |corners: &[u32; 3]| corners.iter().map(|&corner| place(corner)).sum::<Vector3<f64>>() / 3.0;

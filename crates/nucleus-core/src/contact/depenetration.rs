@@ -9,6 +9,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::bytes::encode_struct;
+use crate::contact::boundary::unit_normal;
 use crate::contact::bvh::Aabb;
 use crate::contact::collider::ColliderState;
 use crate::contact::material::ContactMaterial;
@@ -167,12 +168,6 @@ pub fn push_outward<R: Real>(
     if push > 0.0 {
         step.push_point(point, outward * push, outward * push.min(target - before));
     }
-}
-
-/// The unit normal of a face; zero where it has no area.
-pub fn unit_normal(corners: [Point; 3]) -> Point {
-    let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-    normal.try_normalize(0.0).unwrap_or_default()
 }
 
 /// The face through which a position inside a closed collider leaves; `None` outside. That is the nearest, of those on the

@@ -177,8 +177,8 @@ pub struct ColliderStep<'a, R> {
     pub anchors: &'a [[f64; 3]],
     /// The collider's points at the start and at the end of the frame.
     pub collider: [&'a [Point]; 2],
-    /// How the collider turns in the frame.
-    pub turning: &'a Turning,
+    /// How the collider turns in the frame; `None` where it does not.
+    pub turning: Option<&'a Turning>,
     /// Start and end of the step, as shares of the frame.
     pub time: TimeInterval,
     /// The candidate interval, as shares of the frame.
@@ -403,8 +403,8 @@ impl<R: Real> ColliderStepArgs<'_, R> {
             writer,
             start,
             anchors,
-            collider: [&collider.start, &collider.end],
-            turning: &collider.turning,
+            collider: collider.ends(),
+            turning: collider.turning.as_ref(),
             time: self.time,
             interval: self.interval,
             shares: self.time.ends().map(|time| R::from_f64(self.interval.share_of(time))),

@@ -13,7 +13,6 @@ use nalgebra::Vector3;
 use crate::bytes::{Encode, Reader};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::separation::{best_plane, separated};
-use crate::contact::collider::turning::Turning;
 use crate::contact::collider_maps::ColliderMaps;
 use crate::contact::material::ContactMaterial;
 use crate::contact::narrow_phase;
@@ -357,11 +356,9 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// How far what keeps its thickness from the surface moves along it in the frame because the surface turns, in metres.
     #[inline]
     fn turn(&self, step: &ColliderStep<'_, R>, ends: &[[Point; M]; 2]) -> Point {
-        if matches!(step.turning, Turning::None) {
-            return Point::zeros();
-        }
+        let Some(turning) = step.turning else { return Point::zeros() };
         let normal = Point::from(self.normal.map(R::to_f64));
-        step.turning.of_normal(normal, ends) * self.rest_gap(step, self.weights).to_f64()
+        turning.of_normal(normal, ends) * self.rest_gap(step, self.weights).to_f64()
     }
 
     /// Sets the weights of the contact, and the place where its plane was set.

@@ -79,8 +79,8 @@ pub struct ColliderState {
     pub max_travel: f64,
     /// The mean motion of its points in this frame, in metres.
     pub mean_travel: Vector3<f64>,
-    /// How its surface turns in this frame.
-    pub turning: Turning,
+    /// How its surface turns in this frame; `None` where it does not.
+    pub turning: Option<Turning>,
     /// Low and high corner of the bounding box at the start and at the end of the frame.
     corners: [[Vector3<f64>; 2]; 2],
     /// The time that the solver has reached, as a share of the frame.
@@ -127,7 +127,7 @@ impl ColliderState {
             moves: false,
             max_travel: 0.0,
             mean_travel: Vector3::zeros(),
-            turning: Turning::None,
+            turning: None,
             corners: [corners(positions); 2],
             now: 0.0,
             boxes: Boxes::default(),
@@ -154,7 +154,7 @@ impl ColliderState {
             let sum: Vector3<f64> = self.start.iter().zip(&self.end).map(|(start, end)| end - start).sum();
             self.mean_travel = sum / self.start.len().max(1) as f64;
             self.corners = [corners(&self.start), corners(&self.end)];
-            self.turning = if self.moves { Turning::of(self.ends()) } else { Turning::None };
+            self.turning = if self.moves { Turning::of(self.ends()) } else { None };
         }
     }
 

@@ -5,8 +5,9 @@
 
 use nalgebra::Vector3;
 
+use crate::contact::boundary::unit_normal;
 use crate::contact::collider::lists::for_contacts_of;
-use crate::contact::depenetration::{Obstacle, unit_normal};
+use crate::contact::depenetration::Obstacle;
 use crate::contact::ground::pass::for_ground_contacts;
 use crate::contact::system::ContactPass;
 use crate::math::Real;

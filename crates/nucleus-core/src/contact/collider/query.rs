@@ -4,7 +4,7 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::boundary::{ElementGroup, Pseudonormals};
+use crate::contact::boundary::{ElementGroup, Pseudonormals, unit_normal};
 use crate::contact::bvh::Aabb;
 use crate::contact::collider::candidates::{OverlappingPair, for_candidates};
 use crate::contact::collider::contact::ColliderContact;
@@ -255,8 +255,8 @@ impl<R: Real> ColliderQuery<'_, R> {
         outward: impl Fn(&Pseudonormals, &dyn Fn(u32) -> Vector3<f64>) -> Vector3<f64>,
     ) -> bool {
         let normal = |face: u32| {
-            let [from, _] = self.step.collider_positions(self.collider.boundary.triangles[face as usize]);
-            (from[1] - from[0]).cross(&(from[2] - from[0])).try_normalize(0.0).unwrap_or_default()
+            let corners = self.collider.boundary.triangles[face as usize];
+            unit_normal(self.step.collider_positions(corners)[0])
         };
         let is_filtered = self.step.material.depenetrates && contact.is_interior();
         let pseudonormals = self.collider.pseudonormals.as_ref().filter(|_| is_filtered);

@@ -5,17 +5,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::contact::boundary::unit_normal;
 use crate::contact::collider::affine_motion::AffineMotion;
 use crate::schedule::TimeInterval;
 
 type Point = Vector3<f64>;
 
 /// The turn of a collider's surface in a frame.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub enum Turning {
-    /// It is at rest, or moves without turning.
-    #[default]
-    None,
     /// All of it turns alike: the change of a direction is linear in it.
     Whole(Matrix3<f64>),
     /// It deforms, and each face turns by itself.
@@ -26,12 +24,12 @@ pub enum Turning {
 const NO_TURN: f64 = 1e-9;
 
 impl Turning {
-    /// That of a collider, given its points at the start and at the end of the frame.
-    pub fn of(ends: [&[Point]; 2]) -> Self {
+    /// That of a collider that moves, given its points at the start and at the end of the frame; `None` without a turn.
+    pub fn of(ends: [&[Point]; 2]) -> Option<Self> {
         match AffineMotion::of(ends, TimeInterval { start: 0.0, end: 1.0 }) {
-            Some(motion) if motion.linear().norm() <= NO_TURN => Self::None,
-            Some(motion) => Self::Whole(*motion.linear()),
-            None => Self::ByFace,
+            Some(motion) if motion.linear().norm() <= NO_TURN => None,
+            Some(motion) => Some(Self::Whole(*motion.linear())),
+            None => Some(Self::ByFace),
         }
     }
 
@@ -39,23 +37,16 @@ impl Turning {
     /// collider at the start and at the end of the frame. Of a collider that deforms that of edges and corners is not known:
     /// zero.
     pub fn of_normal<const M: usize>(&self, normal: Point, [start, end]: &[[Point; M]; 2]) -> Point {
-        let change = match self {
-            Self::None => return Point::zeros(),
-            Self::Whole(linear) => linear * normal,
-            Self::ByFace if M == 3 => {
-                let [before, after] = [start, end].map(|face| unit_normal(face));
+        let change = match (self, &start[..], &end[..]) {
+            (Self::Whole(linear), ..) => linear * normal,
+            (Self::ByFace, &[a, b, c], &[d, e, f]) => {
+                let [before, after] = [[a, b, c], [d, e, f]].map(unit_normal);
                 (after - before) * normal.dot(&before).signum()
             }
-            Self::ByFace => return Point::zeros(),
+            _ => return Point::zeros(),
         };
         change - normal * normal.dot(&change)
     }
-}
-
-/// The unit normal of a face; zero where it has no area.
-fn unit_normal(corners: &[Point]) -> Point {
-    let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-    normal.try_normalize(0.0).unwrap_or_default()
 }
 
 #[cfg(test)]
