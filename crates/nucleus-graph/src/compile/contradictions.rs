@@ -24,9 +24,9 @@ impl Compiler<'_> {
         for (row, need, help) in dependencies {
             let is_own = node.node_type().attribute(row.name).is_some_and(|own| own == row);
             // A switch that is off by default needs nothing to be off.
-            let off = Value::Bool(false);
             let is_off = |setting: &Setting| {
-                row.default.as_ref() == Some(&off) && *setting == Setting::Fixed(Value::Bool(false))
+                let off = Value::Bool(false);
+                row.default.as_ref() == Some(&off) && *setting == Setting::Fixed(off)
             };
             if !is_own || node.settings().get(row.name).is_none_or(is_off) {
                 continue;
