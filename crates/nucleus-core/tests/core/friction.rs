@@ -3,8 +3,8 @@
 use crate::scenes::{LINKS, Vec3, built, cuboid, frame, grid, ground, physical, sphere, still};
 use nalgebra::Rotation3;
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, Faces, FrameInput, Mass, Solver, Start, StateView,
-    Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, Faces, FrameInput, Mass, Real, Solver, Start,
+    StateView, Surface,
 };
 
 const FIRST: ClothId = ClothId(0);
@@ -85,4 +85,80 @@ fn what_grips_a_turning_collider_turns_with_it() {
     let on_ball = lag(sphere(0.5, Vec3::zeros()), Vec3::y() * (0.5 + THICKNESS));
     // It would lag by its distance times the angle, 5 cm, if it followed the surface below it.
     assert!(on_block < 1e-3 && on_ball < 1e-3, "{on_block} and {on_ball}");
+}
+
+/// How far an object slides in a second down a slope of 20 degrees that consists of quads of this size, over where Coulomb's law
+/// takes it.
+fn sliding_ratio<R: Real>(surface: Surface, lists: ClothLists, quad: f64, evaluations: f64) -> f64 {
+    const FRICTION: f64 = 0.2;
+    let (sin, cos) = 20f64.to_radians().sin_cos();
+    let (down, across, normal) = (Vec3::new(cos, -sin, 0.0), Vec3::z(), Vec3::new(sin, cos, 0.0));
+    let quads = ((4.0 / quad).ceil() as u32).max(1);
+    let size = f64::from(quads) * quad;
+    let corner = (down + across) * (-0.37 * size);
+    let slope = Surface::sheet(corner, [down * size, across * size], [quads; 2]);
+    let start = |place: Vec3| down * place.x + across * place.z + normal * THICKNESS;
+    let positions = surface.positions.iter().map(|&place| start(place)).collect();
+    let cloth = thrown(Surface { positions, ..surface }, lists, Vec3::zeros());
+    let mut solver = Solver::<R>::new(built(cloth, [slope]), 2);
+    let settings = ClothFrame { thickness: THICKNESS, friction: FRICTION, ..still() };
+    let collider = ColliderFrame { collide: true, friction: 0.0, ..ColliderFrame::default() };
+    let input =
+        FrameInput { cloths: vec![settings], colliders: vec![collider], ..frame(3, physical(evaluations)) };
+    let before = solver.point(FIRST, 0);
+    (0..24).for_each(|_| {
+        solver.step(&input, &mut ());
+    });
+    let way = (solver.point(FIRST, 0) - before).dot(&down);
+    way / (-input.gravity.y * (sin - FRICTION * cos) / 2.0)
+}
+
+#[test]
+fn a_slope_has_coulombs_friction_in_single_precision_whatever_the_size_of_its_faces() {
+    let sheet = grid(3, 3, Vec3::x() * 0.4, Vec3::z() * 0.4);
+    for quad in [0.1, 1.0, 10.0, 100.0] {
+        for evaluations in [96.0, 400.0] {
+            for (surface, lists) in
+                [(bead(Vec3::new(0.01, 0.0, 0.02)), ClothLists::NONE), (sheet.clone(), LINKS)]
+            {
+                let single = sliding_ratio::<f32>(surface.clone(), lists, quad, evaluations);
+                let double = sliding_ratio::<f64>(surface, lists, quad, evaluations);
+                assert!((double - 1.0).abs() < 1e-3, "{quad} m, {evaluations}: {double}");
+                assert!((single - 1.0).abs() < 1e-2, "{quad} m, {evaluations}: {single}");
+            }
+        }
+    }
+}
+
+/// The smallest and the largest distance of a sheet from a plate of one quad, over its thickness, while the plate turns.
+fn distances_from_turning_plate(size: f64) -> [f64; 2] {
+    let plate = grid(2, 2, Vec3::x() * size, Vec3::z() * size);
+    let mut sheet = grid(3, 3, Vec3::x() * 0.4, Vec3::z() * 0.4);
+    sheet.positions.iter_mut().for_each(|place| *place += Vec3::new(0.3, THICKNESS, 0.1));
+    let cloth = thrown(sheet, LINKS, Vec3::zeros());
+    let mut solver = Solver::<f64>::new(built(cloth, [plate.clone()]), 2);
+    let turned = |k: u32| Rotation3::from_axis_angle(&Vec3::z_axis(), 0.1 * f64::from(k) / 24.0);
+    let settings = ClothFrame { thickness: THICKNESS, friction: 1.0, ..still() };
+    let mut range = [f64::MAX, 0.0f64];
+    for k in 1..=24 {
+        let at = |k| plate.positions.iter().map(|place| turned(k) * place).collect::<Vec<_>>();
+        let moving =
+            ColliderFrame { collide: true, start: at(k - 1), end: at(k), ..ColliderFrame::default() };
+        let input =
+            FrameInput { cloths: vec![settings], colliders: vec![moving], ..frame(3, physical(96.0)) };
+        solver.step(&input, &mut ());
+        for point in 0..9 {
+            let distance = (turned(k).inverse() * solver.point(FIRST, point)).y / THICKNESS;
+            range = [range[0].min(distance), range[1].max(distance)];
+        }
+    }
+    range
+}
+
+#[test]
+fn a_sheet_on_a_turning_plate_keeps_its_thickness_whatever_the_size_of_the_faces() {
+    for size in [2.0, 20.0, 60.0] {
+        let [least, most] = distances_from_turning_plate(size);
+        assert!(least > 0.999 && most < 1.001, "{size} m: {least} to {most} thicknesses");
+    }
 }

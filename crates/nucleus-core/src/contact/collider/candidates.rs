@@ -76,12 +76,14 @@ fn for_candidates_in_fours<R: Real, const N: usize, const M: usize>(
         }
         let (normals, weights) = (planes.normal.map(Four::to_array), line.weights);
         let (ours, theirs) = (weights.0.map(Four::to_array), weights.1.map(Four::to_array));
+        let heights = planes.heights.map(Four::to_array);
         let offsets = planes.offsets.map(|of_points| of_points.map(Four::to_array));
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
             let plane = Plane {
                 normal: normals.map(|axis| R::from_f64(axis[lane])),
+                heights: heights.map(|height| height[lane]),
                 offsets: offsets.map(|of_points| of_points.map(|of_point| R::from_f64(of_point[lane]))),
             };
             let weights = (ours.map(|weight| weight[lane]), theirs.map(|weight| weight[lane]));
@@ -107,10 +109,11 @@ struct FourLines<const N: usize, const M: usize> {
     weights: ([Four; N], [Four; M]),
 }
 
-/// The planes of four contacts: normals rounded to the solver's scalar, and the offset for each point at the start and at
-/// the end of the candidate interval.
+/// The planes of four contacts: normals rounded to the solver's scalar, and the height and the offset for each point at the
+/// start and at the end of the candidate interval.
 struct CandidatePlanes<const N: usize> {
     normal: FourPositions,
+    heights: [Four; 2],
     offsets: [[Four; N]; 2],
 }
 
@@ -190,18 +193,19 @@ impl<const N: usize, const M: usize> FourPairs<N, M> {
     fn planes<R: Real>(&self, normal: FourPositions) -> CandidatePlanes<N> {
         // Rounds first, so that offset and direction belong together to the last bit.
         let normal = normal.map(|axis| Four::from_array(axis.to_array().map(|x| R::from_f64(x).to_f64())));
-        let mut offsets = [[Four::splat(0.0); N]; 2];
+        let (mut heights, mut offsets) = ([Four::splat(0.0); 2], [[Four::splat(0.0); N]; 2]);
         for (end, offsets) in offsets.iter_mut().enumerate() {
             let theirs = &self.their_ends[end];
             let mut highest = dot(normal, theirs[0]);
             for position in &theirs[1..] {
                 highest = highest.most(dot(normal, *position));
             }
+            heights[end] = highest;
             for k in 0..N {
                 offsets[k] = highest - dot(normal, self.anchors[k]);
             }
         }
-        CandidatePlanes { normal, offsets }
+        CandidatePlanes { normal, heights, offsets }
     }
 
     /// The smallest gap along each plane over the motion bounds, at the start and at the end of the candidate interval.

@@ -36,6 +36,9 @@ pub struct ColliderContact<R, const N: usize, const M: usize> {
     pub(super) normal: [R; 3],
     /// n·q less n·anchor for each cloth point, at the start and at the end of the candidate interval.
     plane: [[R; N]; 2],
+    /// How far the plane is above the contact on the collider, at the start and at the end of the candidate interval: it is
+    /// through the highest of the collider's points, and its normal is rounded and does not turn with the collider.
+    excess: [R; 2],
     /// Weights of the cloth points at the contact.
     pub(super) weights: [R; N],
     /// Motion of the collider at the contact over the whole frame, in metres, as if it reached to the cloth.
@@ -48,7 +51,8 @@ pub struct ColliderContact<R, const N: usize, const M: usize> {
 }
 
 impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M> {
-    const SIZE: usize = <[u32; N]>::SIZE + <[u32; M]>::SIZE + 3 * <[R; 3]>::SIZE + 3 * <[R; N]>::SIZE;
+    const SIZE: usize =
+        <[u32; N]>::SIZE + <[u32; M]>::SIZE + 3 * <[R; 3]>::SIZE + 3 * <[R; N]>::SIZE + <[R; 2]>::SIZE;
     fn encode(&self, out: &mut Vec<u8>) {
         // Each frame begins with no contact known to be idle.
         let Self {
@@ -56,6 +60,7 @@ impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M
             collider_points,
             normal,
             plane,
+            excess,
             weights,
             surface_motion,
             plane_origin,
@@ -65,16 +70,19 @@ impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M
         collider_points.encode(out);
         [*normal, *surface_motion, *plane_origin].encode(out);
         [plane[0], plane[1], *weights].encode(out);
+        excess.encode(out);
     }
     fn decode(from: &mut Reader<'_>) -> Option<Self> {
         let (points, collider_points) = (Encode::decode(from)?, Encode::decode(from)?);
         let [normal, surface_motion, plane_origin] = Encode::decode(from)?;
         let [start, end, weights] = Encode::decode(from)?;
+        let excess = Encode::decode(from)?;
         Some(Self {
             points,
             collider_points,
             normal,
             plane: [start, end],
+            excess,
             weights,
             surface_motion,
             plane_origin,
@@ -83,11 +91,12 @@ impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M
     }
 }
 
-/// A separating plane: its normal, and n·q less n·anchor for each cloth point, at the start and at the end of the candidate
-/// interval.
+/// A separating plane: its normal, and n·q and this less n·anchor for each cloth point, at the start and at the end of the
+/// candidate interval.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane<R, const N: usize> {
     pub(super) normal: [R; 3],
+    pub(super) heights: [f64; 2],
     pub(super) offsets: [[R; N]; 2],
 }
 
@@ -152,6 +161,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             collider_points: [0; M],
             normal: zero,
             plane: [none; 2],
+            excess: [R::ZERO; 2],
             weights: none,
             surface_motion: zero,
             plane_origin: zero,
@@ -168,19 +178,20 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         weights: ([f64; N], [f64; M]),
         step: &ColliderStep<'_, R>,
     ) -> Self {
-        let Plane { normal, offsets } = plane;
+        let Plane { normal, heights, offsets } = plane;
         let zero = [R::ZERO; 3];
         let mut contact = Self {
             points,
             collider_points,
             normal,
             plane: offsets,
+            excess: [R::ZERO; 2],
             weights: [R::ZERO; N],
             surface_motion: zero,
             plane_origin: zero,
             idle_until: [R::ZERO; N],
         };
-        contact.set_plane_origin(weights, step);
+        contact.set_plane_origin(heights, weights, step);
         contact
     }
 
@@ -193,6 +204,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             collider_points: [0; M],
             normal,
             plane,
+            excess: [R::ZERO; 2],
             weights: [R::ZERO; N],
             surface_motion: zero,
             plane_origin: zero,
@@ -283,7 +295,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         (interpolate(x, b) - interpolate(q, c)).norm() / self.rest_gap(step, b.map(R::from_f64)).to_f64()
     }
 
-    /// The gap at the contact, and the smallest gap of any point, at a share of the candidate interval.
+    /// The gap at the contact above the plane, and the smallest gap of any point, at a share of the candidate interval.
     #[inline(always)]
     pub(super) fn gaps(&self, displacement: [[R; 3]; N], share: R) -> (R, R) {
         let mut at_contact = R::ZERO;
@@ -294,6 +306,12 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             least = if k == 0 || gap < least { gap } else { least };
         }
         (at_contact, least)
+    }
+
+    /// How far the plane is above the contact on the collider, at a share of the candidate interval.
+    #[inline(always)]
+    pub(super) fn excess_at(&self, share: R) -> R {
+        self.excess[0] + (self.excess[1] - self.excess[0]) * share
     }
 
     /// The gap at the start of the step.
@@ -335,13 +353,14 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         weights: ([f64; N], [f64; M]),
         step: &ColliderStep<'_, R>,
     ) {
-        self.set_plane_offsets(normal, step);
-        self.set_plane_origin(weights, step);
+        let heights = self.set_plane_offsets(normal, step);
+        self.set_plane_origin(heights, weights, step);
     }
 
-    /// Sets the normal of the plane, and its offset for each point.
+    /// Sets the normal of the plane, and its offset for each point. Returns n·q at the start and at the end of the candidate
+    /// interval.
     #[inline]
-    fn set_plane_offsets(&mut self, normal: Point, step: &ColliderStep<'_, R>) {
+    fn set_plane_offsets(&mut self, normal: Point, step: &ColliderStep<'_, R>) -> [f64; 2] {
         self.normal = [normal.x, normal.y, normal.z].map(R::from_f64);
         // Rounds first, so that offset and direction belong together to the last bit.
         let normal = Point::from(self.normal.map(R::to_f64));
@@ -351,6 +370,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             let anchor = normal.dot(&Point::from(step.anchors[self.points[k] as usize]));
             (self.plane[0][k], self.plane[1][k]) = (R::from_f64(start - anchor), R::from_f64(end - anchor));
         }
+        [start, end]
     }
 
     /// How far what keeps its thickness from the surface moves along it in the frame because the surface turns, in metres.
@@ -361,15 +381,26 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         turning.of_normal(normal, ends) * self.rest_gap(step, self.weights).to_f64()
     }
 
-    /// Sets the weights of the contact, and the place where its plane was set.
+    /// Sets the weights of the contact, and the place where its plane was set; `heights` are those of the plane.
     #[inline]
-    fn set_plane_origin(&mut self, (b, c): ([f64; N], [f64; M]), step: &ColliderStep<'_, R>) {
+    fn set_plane_origin(
+        &mut self,
+        heights: [f64; 2],
+        (b, c): ([f64; N], [f64; M]),
+        step: &ColliderStep<'_, R>,
+    ) {
         let mut ends = [[Point::zeros(); M]; 2];
         for k in 0..M {
             let point = self.collider_points[k] as usize;
             (ends[0][k], ends[1][k]) = (step.collider[0][point], step.collider[1][point]);
         }
-        let motion = interpolate(ends[1], c) - interpolate(ends[0], c);
+        let start = interpolate(ends[0], c);
+        let motion = interpolate(ends[1], c) - start;
+        let normal = Point::from(self.normal.map(R::to_f64));
+        let times = step.interval.ends();
+        for end in 0..2 {
+            self.excess[end] = R::from_f64(heights[end] - normal.dot(&(start + motion * times[end])));
+        }
         self.weights = b.map(R::from_f64);
         self.surface_motion = (motion + self.turn(step, &ends)).map(R::from_f64).into();
         let contact = self.contact_displacement(step.displacements(self.points));
@@ -397,6 +428,7 @@ impl<R: Real> ColliderContact<R, 1, 3> {
             collider_points: corners,
             normal: zero,
             plane: [[R::ZERO; 1]; 2],
+            excess: [R::ZERO; 2],
             weights: [R::ZERO; 1],
             surface_motion: zero,
             plane_origin: zero,

@@ -42,10 +42,12 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             return self.resolve_exact(step, least);
         }
         let rest_gap = self.rest_gap(step, self.weights);
+        let gap = gap + self.excess_at(step.shares[1]);
         if gap >= rest_gap * touching {
             return self.leave(step, gap);
         }
-        self.push(step, rest_gap, [self.gap_at_start(step), gap]);
+        let before = self.gap_at_start(step) + self.excess_at(step.shares[0]);
+        self.push(step, rest_gap, [before, gap]);
         Outcome::Pushed
     }
 
