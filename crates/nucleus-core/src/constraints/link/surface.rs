@@ -20,6 +20,9 @@ use super::placed::{Direction, Placed};
 use super::sweep::LinkSweep;
 use super::topology::SurfaceId;
 
+/// Share of a vector below which its part along a surface is rounding, which has no direction.
+const ROUNDING: f64 = 1e-12;
+
 impl<R: Real> ConstraintLinks<R> {
     fn placed<'a>(
         &'a self,
@@ -109,7 +112,8 @@ impl<R: Real> ConstraintLinks<R> {
                 // Friction acts on the motion of this step.
                 let moved =
                     if frame.slides { d - start_vector(link, &row.ends, state, prescribed, from) } else { d };
-                (moved - normal * moved.dot(&normal)).try_normalize(0.0).unwrap_or_default()
+                let rounding = ROUNDING * moved.norm();
+                (moved - normal * moved.dot(&normal)).try_normalize(rounding).unwrap_or_default()
             }
         };
         let gradient = placed.gradient(link, row, direction, [d, normal, unit]);
