@@ -37,7 +37,7 @@ use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State, inverse_mass_of};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver17";
+const KIND: [u8; 8] = *b"solver18";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {

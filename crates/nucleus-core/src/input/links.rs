@@ -60,10 +60,15 @@ impl LinkSide {
 pub struct Link {
     /// What is joined. With `on_surface` the second side is a face.
     pub sides: [LinkSide; 2],
-    /// Distance to hold in metres, before [`ConstraintFrame::rest_scale`]; on a surface along its normal, with sign.
+    /// Distance to hold in metres, before [`ConstraintFrame::rest_scale`]; on a surface along its normal, or its direction where
+    /// it is oblique, with sign.
     pub rest: f64,
     /// Strength is split: one along the normal of the face on the second side, another along the face.
     pub on_surface: bool,
+    /// Of a link on a surface that starts beside its face and does not slide: its unit direction turns with the face and takes the
+    /// place of the normal. These are its components in the plane of the face, along the first edge and across it; the third is
+    /// not negative.
+    pub oblique: Option<[f64; 2]>,
     /// Factor on the strength, 0 to 1 (product of both components').
     pub strength: f64,
     /// Factor on the tangent strength.
@@ -103,6 +108,7 @@ impl Link {
             sides,
             rest,
             on_surface: false,
+            oblique: None,
             strength: 1.0,
             tangent_strength: 1.0,
             glue: 1.0,
@@ -110,6 +116,14 @@ impl Link {
             length: 1.0,
             fold: None,
         }
+    }
+
+    /// The frame in which the direction of an oblique link is given: along the first edge of a face, across it and along the
+    /// normal. `None` for a face without area.
+    pub fn face_frame([a, b, c]: [Vector3<f64>; 3]) -> Option<[Vector3<f64>; 3]> {
+        let along = (b - a).try_normalize(0.0)?;
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+        Some([along, normal.cross(&along), normal])
     }
 
     /// The cloths on its sides, by index.
@@ -308,23 +322,41 @@ impl Encode for LinkSide {
     }
 }
 
-/// Sides, rest length and surface; strengths; weights, length, and the fold, whose length is negative where there is none.
-type PackedLink = (([LinkSide; 2], (f64, bool)), ([f64; 3], ([f64; 3], (f64, [u32; 2]))));
+/// Sides, rest length and surface, and its direction; strengths; weights, length, and the fold. A direction of more than
+/// length one and a fold of negative length are none.
+type PackedLink = (([LinkSide; 2], (f64, (bool, [f64; 2]))), ([f64; 3], ([f64; 3], (f64, [u32; 2]))));
+
+/// What is stored where a link is not oblique.
+const NOT_OBLIQUE: [f64; 2] = [2.0; 2];
 
 impl Encode for Link {
     const SIZE: usize = <PackedLink as Encode>::SIZE;
     fn encode(&self, out: &mut Vec<u8>) {
-        let Self { sides, rest, on_surface, strength, tangent_strength, glue, weight, length, fold } = *self;
+        let Self { sides, rest, on_surface, oblique, strength, tangent_strength, glue, weight, length, fold } =
+            *self;
         let fold = fold.map_or((-1.0, [0; 2]), |Fold { max_length, holds }| (max_length, holds));
         let numbers = ([strength, tangent_strength, glue], ([weight[0], weight[1], length], fold));
-        let packed: PackedLink = ((sides, (rest, on_surface)), numbers);
+        let direction = oblique.unwrap_or(NOT_OBLIQUE);
+        let packed: PackedLink = ((sides, (rest, (on_surface, direction))), numbers);
         packed.encode(out);
     }
     fn decode(from: &mut Reader<'_>) -> Option<Self> {
-        let ((sides, (rest, on_surface)), numbers) = PackedLink::decode(from)?;
+        let ((sides, (rest, (on_surface, direction))), numbers) = PackedLink::decode(from)?;
         let ([strength, tangent_strength, glue], ([a, b, length], (max_length, holds))) = numbers;
         let fold = (max_length >= 0.0).then_some(Fold { max_length, holds });
         let weight = [a, b];
-        Some(Self { sides, rest, on_surface, strength, tangent_strength, glue, weight, length, fold })
+        let oblique = (direction != NOT_OBLIQUE).then_some(direction);
+        Some(Self {
+            sides,
+            rest,
+            on_surface,
+            oblique,
+            strength,
+            tangent_strength,
+            glue,
+            weight,
+            length,
+            fold,
+        })
     }
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use crate::scenes::links::{PHYSICAL, model, momenta, place, point, points, run, tied};
 use crate::scenes::{LINKS, Vec3, frame, grid, pins, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, ConstraintFrame, ExcludedSide, Exclusion, Falloff, FrameInput,
-    LOAD_OF_HALF, Link, LinkForce, LinkMethod, LinkSide, Mass, ModelBuilder, PointId, ResistanceModel,
-    STIFFNESS_PER_RESISTANCE, Solver, StateView, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId, ConstraintFrame,
+    ExcludedSide, Exclusion, Falloff, FrameInput, LOAD_OF_HALF, Link, LinkForce, LinkMethod, LinkSide, Mass,
+    ModelBuilder, PointId, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView, Surface,
 };
 use proptest::prelude::*;
 
@@ -304,28 +304,85 @@ proptest! {
     }
 }
 
-#[test]
-fn links_on_a_face_keep_the_momentum_and_angular_momentum_of_both_sides() {
+/// Runs a place above a face or beside it, and checks that both keep their momentum and angular momentum. Returns how far the place
+/// has come.
+fn pulled_to_a_face(start: Vec3, weights: [f64; 3], (rest, oblique): (f64, Option<[f64; 2]>)) -> Vec3 {
     let face = [Vec3::zeros(), Vec3::x(), Vec3::z()];
     let mut sheet = Surface { positions: face.to_vec(), ..Surface::default() };
     sheet.faces.push(&[0, 1, 2]);
     let sheet = Cloth::new(sheet, Mass::PerPoint(1.0), LINKS);
-    let link =
-        Link { on_surface: true, ..Link::new([point(0, 0), place(1, [0, 1, 2], [0.4, 0.3, 0.3])], 0.2) };
+    let sides = [point(0, 0), place(1, [0, 1, 2], weights)];
+    let link = Link { on_surface: true, oblique, ..Link::new(sides, rest) };
     let weak = ConstraintFrame { strength: 0.02, tangent_strength: 0.02, ..ConstraintFrame::default() };
     let constraint = ConstraintFrame { formed: Some(vec![link]), ..weak };
-    let mut solver: Solver<f64> = Solver::new(model([points(&[Vec3::new(0.1, 0.5, 0.5)]), sheet]), 1);
+    let mut solver: Solver<f64> = Solver::new(model([points(&[start]), sheet]), 1);
     let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(2, PHYSICAL, constraint) };
     input.cloths[0].collide = true; // faces exist only where contact is possible
     run(&mut solver, &mut input, 6);
     let [linear, angular] = momenta(&solver, &[1, 3]);
     assert!(linear.norm() < 1e-4, "{linear}");
-    // The place is not above its foot: along the face it is pulled at half a metre from where the face is pushed back.
     let mut velocities = Vec::new();
     solver.velocities(ClothId(0), 1.0, &mut velocities);
     let speed = Vec3::from(velocities[0].map(f64::from)).norm();
     assert!(angular.norm() < 1e-3 * speed, "{angular} at {speed} m/s");
-    assert!(solver.point(ClothId(0), 0).y < 0.5);
+    solver.point(ClothId(0), 0) - start
+}
+
+#[test]
+fn links_on_a_face_keep_the_momentum_and_angular_momentum_of_both_sides() {
+    // The place is not above its foot: along the face it is pulled at half a metre from where the face is pushed back.
+    let moved = pulled_to_a_face(Vec3::new(0.1, 0.5, 0.5), [0.4, 0.3, 0.3], (0.2, None));
+    assert!(moved.y < 0.0);
+}
+
+#[test]
+fn links_beside_a_face_keep_the_momentum_and_angular_momentum_of_both_sides() {
+    // The normal of the face points down, and the direction of the link up from the first edge and along both others.
+    let moved = pulled_to_a_face(Vec3::new(-0.4, 0.5, 0.2), [0.6, 0.0, 0.4], (-0.2, Some([0.6, 0.3])));
+    assert!(moved.y < 0.0 && moved.x > 0.0, "{moved}");
+}
+
+/// How far a point of one kilogram beside the border of a plate sinks in gravity, held with this tangent strength.
+fn sag_beside_a_border(tangent_strength: f64) -> f64 {
+    let plate = Surface::sheet(Vec3::new(-1.0, -1.0, 0.0), [Vec3::x(), Vec3::y() * 2.0], [1, 1]);
+    let corners = plate.faces.triangles().find(|corners| {
+        corners.iter().filter(|&&corner| plate.positions[corner as usize].x == 0.0).count() == 2
+    });
+    let corners = corners.expect("a face at the border");
+    let face = corners.map(|corner| plate.positions[corner as usize]);
+    let line = Vec3::x() * 0.1;
+    let frame = Link::face_frame(face).expect("a face with an area");
+    let direction = [line.dot(&frame[0]), line.dot(&frame[1])].map(|part| part / line.norm());
+    let weights = face.map(|corner| if corner.x == 0.0 { 0.5 } else { 0.0 });
+    let foot = LinkSide::Collider { collider: ColliderId(0), points: corners.map(PointId), weights };
+    let link =
+        Link { on_surface: true, oblique: Some(direction), ..Link::new([point(0, 0), foot], line.norm()) };
+    let mut builder = model([points(&[line])]);
+    builder.collider(Collider { surface: plate }).expect("a good mesh");
+    let strength = 20.0;
+    let constraint = ConstraintFrame {
+        formed: Some(vec![link]),
+        strength,
+        tangent_strength,
+        ..ConstraintFrame::default()
+    };
+    let mut input = tied(1, PHYSICAL, constraint);
+    input.colliders = vec![ColliderFrame::default()];
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let heights = (0..24).map(|_| {
+        run(&mut solver, &mut input, 1);
+        solver.point(ClothId(0), 0).y
+    });
+    -heights.fold(0.0, f64::min)
+}
+
+#[test]
+fn tangent_strength_holds_a_place_beside_the_border_of_a_surface() {
+    // A spring of 500 N/m for a strength of 1: the point sinks by at most twice the sag at rest.
+    let sag = sag_beside_a_border(10.0);
+    assert!(sag < 2.0 * 9.81 / 5000.0 && sag > 9.81 / 5000.0, "{sag} m");
+    // Without it only the distance is held, along a line that does not turn.
+    assert!(sag_beside_a_border(0.0) > 1.0);
 }
 
 // EVIDENCE: N2.2-7  links have the same bits on any number of threads

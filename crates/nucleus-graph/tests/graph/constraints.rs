@@ -312,6 +312,29 @@ fn a_sheet_held_from_places_far_above_its_faces_does_not_feed_on_its_turning() {
     }
 }
 
+#[test]
+fn points_beside_an_edge_or_a_corner_of_a_surface_are_held_along_it_as_points_above_a_face_are() {
+    for place in ["(0.6, -1.1, 0.1)", "(0.6, -1.1, 0.6)", "(0.6, -0.4, 0.6)", "(0.2, -0.45, 0.55)"] {
+        let nodes = format!(
+            r#""n": nucleus(airDensity: 0), "box": polyCube(translate: (0, -1, 0)), "r": nRigid(inputMesh: "box", collide: false),
+            "q": nParticle(position: [{place}], radius: 0.01),
+            "s": dynamicConstraint(type: pointToSurface, components: ["r", "q"], strength: 10, tangentStrength: 10)"#
+        );
+        let program = program(&of_nodes(&nodes, ""));
+        let [start] = places(&program, 0, "q")[..] else { panic!("one point") };
+        // Springs of 500 N/m for a strength of 1, halved by either component, hold one kilogram: let go, it sinks to twice its sag.
+        let most = 2.0 * 9.8 / 1250.0;
+        for frames in [4, 8, 16, 24] {
+            let [x, y, z] = places(&program, frames, "q")[0];
+            let moved = [x - start[0], y - start[1], z - start[2]].map(f32::abs);
+            assert!(
+                moved.iter().all(|&moved| moved < 1.01 * most),
+                "{place}: moved by {moved:?} m in {frames} frames"
+            );
+        }
+    }
+}
+
 // An edge has no face that takes up the torque of friction: the pull along it fed the sheet.
 #[test]
 fn a_particle_that_slides_beside_a_falling_sheet_does_not_feed_it() {

@@ -1,12 +1,16 @@
-//! The gradient of a link on a surface: how its length changes with each point, and with the tilt of the face.
+//! The gradient of a link on a surface: how its length changes with each point, and with the turn of the face.
 //!
 //! With d from the foot Σ w_i x_i to the place and the unit normal n of the face, δn = -Σ g_i (n·δx_i), where g_i is the
 //! gradient of the barycentric coordinate i in the plane of the face. So d·n changes by -(w_i + g_i·d) n·δx_i, and d·t by
 //! (-w_i t + (d·n) (g_i·t) n)·δx_i. Without the tilt, a link that holds a place far from a face would turn the face without
 //! an opposite torque, and feed on it.
+//!
+//! The direction m of an oblique link turns with the frame of the face, δm = φ × m, whose rotation φ is the tilt n × δn and the turn
+//! of the first edge about n. So d·m changes by φ·(m × d), and its length across m, along t, by -(d·m) φ·(m × t).
 
 use nalgebra::Vector3;
 
+use crate::input::links::Link;
 use crate::math::{Real, Row4};
 use crate::state::State;
 
@@ -34,8 +38,31 @@ impl Gradient {
         }
     }
 
+    /// Subtracts the change of a face's unit normal times a vector, which is given with a factor. `weight` is that of the side.
+    pub(super) fn add_tilt(
+        &mut self,
+        (corners, face): ([u32; 3], [Point; 3]),
+        normal: Point,
+        (lever, factor): (Point, f64),
+        weight: f64,
+    ) {
+        for (corner, of) in corners.into_iter().zip(barycentric_gradients(face)) {
+            self.add(corner, normal * (of.dot(&lever) * factor), weight);
+        }
+    }
+
+    /// Adds the rotation of a face's frame times a vector.
+    pub(super) fn add_turn(&mut self, on: ([u32; 3], [Point; 3]), torque: Point, weight: f64) {
+        let ([first, second, _], face) = on;
+        let Some([along, across, normal]) = Link::face_frame(face) else { return };
+        self.add_tilt(on, normal, (normal.cross(&torque), 1.0), weight);
+        let turn = across * (normal.dot(&torque) / along.dot(&(face[1] - face[0])));
+        self.add(first, -turn, weight);
+        self.add(second, turn, weight);
+    }
+
     /// Adds the part of a corner of the face. `weight` is that of the side.
-    pub(super) fn add(&mut self, row: u32, change: Point, weight: f64) {
+    fn add(&mut self, row: u32, change: Point, weight: f64) {
         let known = self.rows[..self.count].iter().position(|&other| other == row);
         let at = known.unwrap_or(self.count);
         self.count = self.count.max(at + 1);
@@ -75,6 +102,13 @@ pub(super) fn barycentric_gradients([a, b, c]: [Point; 3]) -> [Point; 3] {
     let square = normal.norm_squared();
     let of = |edge: Point| if square > 0.0 { normal.cross(&edge) / square } else { Point::zeros() };
     [of(c - b), of(a - c), of(b - a)]
+}
+
+/// The unit vector with these components along the first edge of a triangle and across it; zero without area.
+pub(super) fn direction_on(face: [Point; 3], [along, across]: [f64; 2]) -> Point {
+    let above = (1.0 - along * along - across * across).max(0.0).sqrt();
+    let of = |axes: [Point; 3]| axes[0] * along + axes[1] * across + axes[2] * above;
+    Link::face_frame(face).map(of).and_then(|direction| direction.try_normalize(0.0)).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::model::{ClothModel, ColliderModel};
 use crate::state::State;
 
 use super::ends::Prescribed;
-use super::gradient::{Gradient, barycentric_gradients};
+use super::gradient::{Gradient, direction_on};
 use super::topology::{CsrLists, SurfaceId, SurfaceRow};
 
 type Point = Vector3<f64>;
@@ -157,11 +157,14 @@ impl<R: Real> Placed<'_, R> {
         row.beside.filter(|_| self.prescribed.frame.slides)
     }
 
-    /// The unit vector along which a link with the distance vector `d` keeps its rest length: the normal, or of a sliding
-    /// link beside its face the line from its foot on an edge, where it has no side. An edge of cloth takes up no torque:
-    /// there the line is `d`, and friction does not act.
+    /// The unit vector along which a link with the distance vector `d` keeps its rest length: the normal; of an oblique link
+    /// its direction, which turns with the face; of a sliding link beside its face the line from its foot on an edge, where it
+    /// has no side. An edge of cloth takes up no torque: there the line is `d`, and friction does not act.
     pub(super) fn hold(&self, link: &Link, row: &SurfaceRow, frame: &ConstraintFrame, d: Point) -> Point {
         let (corners, weights) = self.corners(&link.sides[1]);
+        if let Some(direction) = self.oblique(link) {
+            return direction_on(corners.map(|corner| self.position(corner)), direction);
+        }
         // At a distance, a place above a face is not along the normal between corners.
         let normal = self.normal(corners, weights, frame.slides && link.rest == 0.0);
         match (self.beside(row).filter(|_| link.rest != 0.0), self.id) {
@@ -171,25 +174,31 @@ impl<R: Real> Placed<'_, R> {
         }
     }
 
-    /// The gradient of d·`unit`, with the tilt of the face where that is cloth.
+    /// The direction of an oblique link. One that slides is along the normal, or beside.
+    fn oblique(&self, link: &Link) -> Option<[f64; 2]> {
+        link.oblique.filter(|_| !self.prescribed.frame.slides)
+    }
+
+    /// The gradient of d·`unit`, with the turn of the face where that is cloth. `hold` is the vector that turns with it.
     pub(super) fn gradient(
         &self,
         link: &Link,
         row: &SurfaceRow,
         direction: Direction,
-        [d, normal, unit]: [Point; 3],
+        [d, hold, unit]: [Point; 3],
     ) -> Gradient {
         let mut gradient = Gradient::along(&row.ends, unit);
-        let tilts = matches!(self.id, SurfaceId::Cloth(_)) && self.beside(row).is_none();
-        if tilts {
+        let turns = matches!(self.id, SurfaceId::Cloth(_)) && self.beside(row).is_none();
+        if turns {
             let (corners, _) = self.corners(&link.sides[1]);
-            let gradients = barycentric_gradients(corners.map(|corner| self.position(corner)));
-            for (corner, of) in corners.into_iter().zip(gradients) {
-                let change = match direction {
-                    Direction::Normal => -of.dot(&d),
-                    Direction::Tangent => of.dot(&unit) * d.dot(&normal),
-                };
-                gradient.add(corner, normal * change, link.weight[0]);
+            let face = corners.map(|corner| self.position(corner));
+            let (lever, factor) = match direction {
+                Direction::Normal => (d, -1.0),
+                Direction::Tangent => (unit, d.dot(&hold)),
+            };
+            match self.oblique(link) {
+                None => gradient.add_tilt((corners, face), hold, (lever, factor), link.weight[0]),
+                Some(_) => gradient.add_turn((corners, face), lever.cross(&hold) * factor, link.weight[0]),
             }
         }
         gradient

@@ -36,6 +36,7 @@ impl ModelSizes<'_> {
         let lengths = [link.length, link.fold.map_or(0.0, |fold| fold.max_length)];
         link.sides.iter().all(is_side)
             && link.rest.abs() <= MAX_LENGTH
+            && link.oblique.iter().flatten().all(|component| component.abs() <= 1.0)
             && lengths.iter().all(|length| (0.0..=MAX_LENGTH).contains(length))
             && factors.iter().all(|factor| (0.0..=MAX_FACTOR).contains(factor))
             && !(link.on_surface && matches!(link.sides[1], LinkSide::Space(_)))

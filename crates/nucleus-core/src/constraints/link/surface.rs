@@ -1,4 +1,5 @@
-//! Links on surfaces: a place and a face, held along the face's normal and along the face with strengths of their own.
+//! Links on surfaces: a place and a face, held along the face's normal and along the face with strengths of their own. A place
+//! beside the face, nearest to an edge or a corner, is held along a direction that turns with the face, and across it.
 //!
 //! A sliding link moves its foot, the place on the face, to the nearest place of the surface in every time step. It walks
 //! from face to neighbouring face and so stays on the sheet where it began. Friction takes from the motion along the face

@@ -192,8 +192,9 @@ fn constraints() -> Vec<ConstraintFrame> {
         ..ConstraintFrame::default()
     };
     let sliding = Link { on_surface: true, ..Link::new([point(1, 15), place], 0.02) };
+    let oblique = Link { oblique: Some([0.6, 0.3]), ..sliding };
     let rubber = ConstraintFrame {
-        formed: Some(vec![sliding]),
+        formed: Some(vec![sliding, oblique]),
         slides: true,
         friction: 0.3,
         keep_off: Some(0.01),

@@ -239,11 +239,22 @@ impl<'a> Numbers<'a> {
     }
 
     fn link(&mut self, link: &'a mut Link) {
-        let Link { sides, rest, on_surface: _, strength, tangent_strength, glue, weight, length, fold } =
-            link;
+        let Link {
+            sides,
+            rest,
+            on_surface: _,
+            oblique,
+            strength,
+            tangent_strength,
+            glue,
+            weight,
+            length,
+            fold,
+        } = link;
         self.add("length of a link", [rest, length]);
         self.add("strength of a link", [strength, tangent_strength, glue]);
         self.add("weight of a link", weight);
+        self.add("direction of a link", oblique.iter_mut().flatten());
         if let Some(Fold { max_length, holds: _ }) = fold {
             self.add("fold", [max_length]);
         }

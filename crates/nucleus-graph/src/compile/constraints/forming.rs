@@ -19,6 +19,9 @@ const ALL_TO_ALL: i32 = 1;
 /// `connectionMethod`.
 const IN_ORDER: i32 = 0;
 
+/// Sine of the angle to the normal of a face within which a place is above it.
+const ABOVE: f64 = 1e-3;
+
 /// What forming links needs of a constraint.
 pub(super) struct Forming<'a> {
     pub(super) values: Values<'a>,
@@ -253,7 +256,12 @@ impl Forming<'_> {
             let side = from.side([points[k]; 3], [1.0, 0.0, 0.0]);
             let a = Place { side, at: corner, element: x };
             let b = self.place(to, y, &on);
-            links.push(self.link([(from, a), (to, b)], on_face.then(|| normal(&theirs, &on))));
+            links.push(
+                self.link(
+                    [(from, a), (to, b)],
+                    on_face.then(|| triangle_of(&theirs, &on).map(|k| theirs[k])),
+                ),
+            );
         }
         if self.bends && from.kind == ElementKind::Edge && to.kind == ElementKind::Edge {
             let first = links.len() as u32 - 2;
@@ -267,17 +275,24 @@ impl Forming<'_> {
         Place { side, at: on.place, element }
     }
 
-    /// The link of two places; on a surface with this normal, its rest length is along it. A link that stays at a place
-    /// beside the surface is a distance, for the normal would pull it over the surface at once.
-    pub(super) fn link(&self, [(from, a), (to, b)]: [(&Member, Place); 2], normal: Option<Point>) -> Link {
+    /// The link of two places, the second on a face if its corners are given. A link that stays at a place beside the face is
+    /// oblique, for the normal would pull it over the face at once.
+    pub(super) fn link(&self, [(from, a), (to, b)]: [(&Member, Place); 2], face: Option<[Point; 3]>) -> Link {
         let line = a.at - b.at;
-        let is_above = |n: &Point| (line - n * line.dot(n)).norm() <= 1e-3 * line.norm();
-        let normal = normal.filter(|normal| self.values.slides() || is_above(normal));
-        let rest = normal.map_or(line.norm(), |normal| line.dot(&normal));
+        let slides = self.values.slides();
+        let frame = face.and_then(|face| Link::face_frame(face).or(slides.then(Default::default)));
+        let is_beside = |normal: &Point| (line - normal * line.dot(normal)).norm() > ABOVE * line.norm();
+        let beside = frame.filter(|[_, _, normal]| !slides && is_beside(normal));
+        let rest = match (frame, beside) {
+            (Some([_, _, normal]), None) => line.dot(&normal),
+            (_, Some([_, _, normal])) if line.dot(&normal) < 0.0 => -line.norm(),
+            _ => line.norm(),
+        };
         let (ours, theirs) = (from.factors(a.element), to.factors(b.element));
         let [strength, tangent_strength, glue] = [0, 1, 2].map(|k| ours[k] * theirs[k]);
         Link {
-            on_surface: normal.is_some(),
+            on_surface: frame.is_some(),
+            oblique: beside.map(|[along, across, _]| [along, across].map(|axis| line.dot(&axis) / rest)),
             strength,
             tangent_strength,
             glue,
@@ -315,7 +330,10 @@ impl Forming<'_> {
                 let from = Place { side: member.side([point; 3], [1.0, 0.0, 0.0]), at, element };
                 let side = surface.side(on.corners.map(|corner| points[corner]), on.weights);
                 let to = Place { side, at: on.place, element: face };
-                let mut link = self.link([(member, from), (surface, to)], Some(normal(polygon, &on)));
+                let mut link = self.link(
+                    [(member, from), (surface, to)],
+                    Some(triangle_of(polygon, &on).map(|k| polygon[k])),
+                );
                 // Beside an edge the distance is not along the normal, but its side is.
                 link.rest = (at - on.place).norm() * if link.rest < 0.0 { -1.0 } else { 1.0 };
                 links.push(link);
@@ -357,11 +375,6 @@ fn rigid_foot(polygon: &[Point], whole: Foot, corner: Point) -> Foot {
 fn triangle_of(polygon: &[Point], on: &Foot) -> [usize; 3] {
     let [a, b, c] = on.corners;
     if a != b && b != c && a != c { on.corners } else { [0, 1, polygon.len() - 1] }
-}
-
-fn normal(polygon: &[Point], on: &Foot) -> Point {
-    let [a, b, c] = triangle_of(polygon, on).map(|k| polygon[k]);
-    (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
 }
 
 /// A number from 0 to 1 that depends on two numbers alone (SplitMix64).
