@@ -3,8 +3,8 @@
 use crate::scenes::links::{PHYSICAL, point, run, tied};
 use crate::scenes::{LINKS, Vec3, pins};
 use nucleus_core::{
-    Cloth, ClothLists, ConstraintFrame, FrameInput, Link, LinkMethod, Mass, ModelBuilder, Solver, StepReport,
-    Surface,
+    Cloth, ClothLists, ConstraintFrame, Elements, FrameInput, Link, LinkMethod, Mass, ModelBuilder,
+    SelfCollision, Solver, StepReport, Surface,
 };
 
 /// How the quads of a grid are cut into triangles.
@@ -148,5 +148,62 @@ fn measure_tears() {
                 "{name} {cells} {kind:?}: {broken} welds, length {length:.3} m (0.7 is straight), off {mean:.4} mean {most:.3} most"
             );
         }
+    }
+}
+
+/// Two faces whose corners are welded, and of which two edges of one pierce the other.
+fn crossed_faces() -> Surface {
+    let mut surface = Surface {
+        positions: vec![
+            Vec3::zeros(),
+            Vec3::x(),
+            Vec3::z(),
+            Vec3::new(0.002, 0.001, 0.002),
+            Vec3::new(0.3, -0.2, 0.3),
+            Vec3::new(0.3, -0.2, 0.35),
+        ],
+        ..Surface::default()
+    };
+    surface.faces.push(&[0, 1, 2]);
+    surface.faces.push(&[3, 4, 5]);
+    surface
+}
+
+/// The pairs that a run counts as unresolved in each of three frames, where a constraint is changed for the second.
+fn unresolved(change: impl Fn(&mut ConstraintFrame)) -> [u64; 3] {
+    let surface = crossed_faces();
+    let mut builder = ModelBuilder::new();
+    let lists = ClothLists { self_collision: true, ..LINKS };
+    builder.cloth(Cloth::new(surface.clone(), Mass::PerArea(0.2), lists)).expect("a good mesh");
+    let mut solver: Solver<f64> = Solver::new(builder, 1);
+    let weld = ConstraintFrame {
+        formed: Some(vec![Link::new([point(0, 0), point(0, 3)], 0.0)]),
+        method: LinkMethod::Weld,
+        ..ConstraintFrame::default()
+    };
+    let mut input = FrameInput { gravity: Vec3::zeros(), ..tied(1, PHYSICAL, weld) };
+    input.cloths[0].collide = true;
+    input.cloths[0].self_collision =
+        SelfCollision { on: true, thickness: 0.01, elements: Elements::Faces, edges: true };
+    input.pins = pins(&surface, 0..6);
+    [0, 1, 2].map(|frame| {
+        if frame == 1 {
+            change(&mut input.constraints[0]);
+        }
+        run(&mut solver, &mut input, 1).pairs_unresolved
+    })
+}
+
+#[test]
+fn edges_and_faces_that_intersect_when_their_weld_is_released_count_once_as_unresolved() {
+    assert_eq!(unresolved(|_| {}), [0, 0, 0]);
+    let unglued =
+        |constraint: &mut ConstraintFrame| (constraint.can_break, constraint.glue_strength) = (true, 0.0);
+    for (release, name) in [
+        (&unglued as &dyn Fn(&mut ConstraintFrame), "without glue"),
+        (&|constraint| constraint.formed = Some(Vec::new()), "without links"),
+        (&|constraint| constraint.method = LinkMethod::Spring, "no weld"),
+    ] {
+        assert_eq!(unresolved(release), [0, 2, 0], "{name}");
     }
 }

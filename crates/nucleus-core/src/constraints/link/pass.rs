@@ -19,7 +19,7 @@ use crate::parallel::thread_pool::ThreadPool;
 use crate::schedule::PassTime;
 use crate::state::State;
 
-/// Forms and heals links. Whether any is new, or whole again.
+/// Forms and heals links. Whether any is new, whole again, or a weld from now on or no longer.
 pub fn form_links<R: Real>(links: &mut Links<R>, model: &Model<R>, frame: &FrameInput) -> bool {
     let mut changed = links.constraints.len() > frame.constraints.len();
     links.constraints.truncate(frame.constraints.len());
@@ -38,6 +38,7 @@ pub fn form_links<R: Real>(links: &mut Links<R>, model: &Model<R>, frame: &Frame
                 own.keep_broken(&before);
             }
         } else if own.layout != layout {
+            changed |= own.layout.is_weld != layout.is_weld && !own.links.is_empty();
             own.lay_out_again(layout, (&model.cloths, &model.colliders), &links.blocks);
         }
         let heals = settings.glue_strength >= 1.0 && own.glue_strength < 1.0;
