@@ -4,9 +4,10 @@
 //! they collide as balls only where `selfCollide` is given; and a wall is at the face of the cube, so that a vessel holds
 //! the volume of the particles that are poured into it, unless `collideWidthScale` is given.
 
-use nucleus_core::Liquid;
+use nalgebra::Vector3;
+use nucleus_core::{COUNT_PERIOD, Liquid};
 
-use crate::attributes::{Key, n_base, n_particle};
+use crate::attributes::{Key, n_base, n_particle, nucleus};
 use crate::graph::{EvalContext, Graph, NodeId};
 
 use super::compiler::Compiler;
@@ -118,5 +119,34 @@ impl Compiler<'_> {
             self.findings.warning(&place, message).help(help);
         }
         Some(())
+    }
+
+    /// Warns of a liquid that the air lets fall at a lower terminal speed than a fall over its own height gives, at the first
+    /// frame. `kilograms` is the mass of a particle. A liquid without particles yet is as high as its rest distance.
+    pub(super) fn warn_of_drag(&mut self, node: NodeId, places: &[Vector3<f64>], kilograms: f64) {
+        let at = &self.start;
+        if !is_liquid(at, node) || at.get(node, &n_particle::IGNORE_SOLVER_GRAVITY) {
+            return;
+        }
+        let of_nucleus = |key: &Key<f64>| at.get(self.program.node, key);
+        let gravity = of_nucleus(&nucleus::GRAVITY).abs();
+        let rate =
+            at.get(node, &n_particle::DRAG) * of_nucleus(&nucleus::AIR_DENSITY) / kilograms / COUNT_PERIOD;
+        let down = Vector3::from(at.get(self.program.node, &nucleus::GRAVITY_DIRECTION));
+        let Some(down) = down.try_normalize(0.0) else { return };
+        let heights = places.iter().map(|place| down.dot(place));
+        let [low, high] = heights.fold([f64::MAX, f64::MIN], |[a, b], y| [a.min(y), b.max(y)]);
+        let height = self.program.units.length((high - low).max(rest_distance(at, node)));
+        let (terminal, fall) = (gravity / rate, (2.0 * gravity * height).sqrt());
+        if rate <= 0.0 || terminal >= fall {
+            return;
+        }
+        let name = self.scene.graph.node(node).name();
+        let message = format!(
+            "`drag` lets the liquid `{name}` fall at no more than {terminal:.4} m/s: a fall over its own height of {height:.3} m \
+             gives {fall:.2} m/s"
+        );
+        let help = "write `drag: 0`: the air hardly slows a liquid, and `viscosity` makes it thick";
+        self.findings.warning(&self.place(node, &n_particle::DRAG.row), message).help(help);
     }
 }

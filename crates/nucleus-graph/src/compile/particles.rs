@@ -45,6 +45,11 @@ impl Compiler<'_> {
             mass: masses.iter().map(|kilograms| kilograms / mass).collect(),
             ..VertexMaps::default()
         };
+        let kilograms = match masses.is_empty() {
+            true => mass * points as f64,
+            false => masses.iter().sum(),
+        };
+        self.warn_of_drag(id, &places, if points > 0 { kilograms / points as f64 } else { mass });
         let warp = Vec::new();
         let mass_of_each = Mass::PerPoint(mass);
         let split_off = Vec::new();
@@ -53,10 +58,6 @@ impl Compiler<'_> {
         match self.program.model.cloth(cloth) {
             Ok(cloth) => {
                 let kind = ObjectKind::Cloth(ClothId(self.program.first_cloth + cloth.0));
-                let kilograms = match masses.is_empty() {
-                    true => mass * points as f64,
-                    false => masses.iter().sum(),
-                };
                 self.add_object(id, kind, points, Faces::default(), kilograms);
                 self.describe_particles(id, varies);
             }

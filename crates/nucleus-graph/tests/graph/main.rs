@@ -7,6 +7,7 @@ mod effects;
 mod filled_particles;
 mod hostile;
 mod independence;
+mod liquids;
 mod maps;
 mod materials;
 mod mesh_files;

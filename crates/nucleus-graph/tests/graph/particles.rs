@@ -16,7 +16,7 @@ pub fn places(program: &Program, frames: usize) -> Vec<[f32; 3]> {
 }
 
 /// All warnings of a scene.
-fn warnings(text: &str) -> Vec<String> {
+pub fn warnings(text: &str) -> Vec<String> {
     let (scene, mut diagnostics) = read_scene_text(text, Path::new("test.ron")).expect("it can be read");
     diagnostics.extend(compile(&scene).expect("it runs").warnings().iter().cloned());
     diagnostics.into_iter().map(|diagnostic| diagnostic.message).collect()
@@ -176,25 +176,6 @@ fn liquid_poured_into_a_box_stays_in_it_at_the_level_of_its_volume() {
         println!("{count} particles: {level:.4} m, by the volume {expected:.4} m");
         assert!((level / expected - 1.0).abs() < 0.05, "{count}: {level} m, by the volume {expected} m");
     }
-}
-
-#[test]
-fn a_liquid_that_contact_keeps_from_its_rest_distance_is_warned_of() {
-    let of = |fields: &str| {
-        let nodes =
-            format!(r#""n": nucleus(), "q": nParticle(enableSPH: true, maximumCorner: (1, 1, 1){fields})"#);
-        warnings(&of_nodes(&nodes, ""))
-    };
-    assert_eq!(of(""), [""; 0]);
-    assert_eq!(of(", collideWidthScale: 0.6"), [""; 0]);
-    let [apart] = &of(", selfCollide: true, collideWidthScale: 0.7, selfCollideWidthScale: 2")[..] else {
-        panic!()
-    };
-    assert!(apart.contains(
-        "`selfCollide` keeps the particles of the liquid `q` 0.560 apart, but at rest they are 0.256"
-    ));
-    let [high] = &of(", collideWidthScale: 1")[..] else { panic!() };
-    assert!(high.contains("`collideWidthScale` keeps the liquid `q` 0.200 away from walls"), "{high}");
 }
 
 #[test]
