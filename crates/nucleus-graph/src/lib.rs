@@ -47,4 +47,4 @@ pub use checks::FrameReport;
 pub use files::LineSpan;
 pub use first_frame::first_frame_warnings;
 pub use last_frame::flat_cloths;
-pub use simulation::{Simulation, least_common_multiple};
+pub use simulation::Simulation;

@@ -16,7 +16,6 @@ use crate::scene::TimeSpan;
 
 use combined::{CombinedObserver, CombinedState, combined_report, with_evaluation};
 use nucleus_run::{NucleusRun, SolverCall};
-pub use substep_merge::least_common_multiple;
 use substep_merge::{SubstepMerge, WithoutSubsteps};
 
 mod combined;

@@ -7,7 +7,6 @@ use clap::Args;
 use nucleus_cache::{RecordError, Recorder, ResumeRange, RunInfo, shell_word};
 use nucleus_core::Real;
 use nucleus_graph::checks::Check;
-use nucleus_graph::least_common_multiple;
 
 use crate::options::Scalar;
 use crate::output::say;
@@ -116,7 +115,7 @@ impl Resume {
         );
         // A changed scene may solve other frames from here on: only those of both are sure to be recorded.
         let interval = recording::interval(&program)?;
-        let both = least_common_multiple(interval.into(), old.cache.run().interval.into());
+        let both = program.common_frames(old.cache.run().interval);
         let interval = u32::try_from(both).unwrap_or(interval);
         let info = RunInfo {
             end,

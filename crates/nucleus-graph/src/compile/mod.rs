@@ -96,6 +96,7 @@ pub use geometry::primitive_surface;
 pub(crate) use liquids::self_collides;
 pub use mesh_files::file_mesh;
 pub use particle_expressions::particle_variables;
+pub(crate) use program::least_common_multiple;
 pub use program::{NamedSelection, NucleusProgram, Object, ObjectKind, Program};
 pub(crate) use sources::EmitterState;
 pub use texture_coordinates::{MeshCoordinates, texture_coordinates};

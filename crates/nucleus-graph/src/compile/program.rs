@@ -215,6 +215,12 @@ impl Program {
         (self.data.every as i64).max(1)
     }
 
+    /// Frames from one frame that both this run and another solve to the next, given those of the other from one solved frame to
+    /// the next.
+    pub fn common_frames(&self, of_other: u32) -> u64 {
+        least_common_multiple(self.whole_frames().unsigned_abs(), of_other.into())
+    }
+
     /// The record options of the scene.
     pub fn record(&self) -> Record {
         self.data.record
@@ -381,4 +387,13 @@ impl NucleusProgram {
     pub fn colliders(&self) -> Range<u32> {
         self.first_collider..self.first_collider + self.colliders.len() as u32
     }
+}
+
+/// The least common multiple of two numbers, or the largest number if it is larger.
+pub(crate) fn least_common_multiple(a: u64, b: u64) -> u64 {
+    (a / greatest_common_divisor(a, b).max(1)).saturating_mul(b)
+}
+
+fn greatest_common_divisor(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }

@@ -11,7 +11,7 @@ use nucleus_core::{
     ClothId, ColliderId, ContactState, Particle, ParticleLook, Stage, StateView, StepObserver, SubstepIndex,
 };
 
-use crate::compile::Program;
+use crate::compile::{Program, least_common_multiple};
 
 use super::nucleus_run::SolverCall;
 
@@ -97,15 +97,6 @@ impl Track {
         }
         Some(after.moved_back(before, f64::from(time - from) / f64::from(to - from)))
     }
-}
-
-/// The least common multiple of two numbers, or the largest number if it is larger.
-pub fn least_common_multiple(a: u64, b: u64) -> u64 {
-    (a / greatest_common_divisor(a, b).max(1)).saturating_mul(b)
-}
-
-fn greatest_common_divisor(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
 /// The state of one nucleus, in its own units. Velocities are per second of the scene.
