@@ -13,7 +13,7 @@
 //!
 //! Normals and `pushOut` come once at the start of a substep, damping and the observer once at its end.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use crate::constraints::angular_momentum::{keep_angular_momentum, keeps_angular_momentum};
 use crate::constraints::damp::damp;
@@ -40,7 +40,7 @@ use crate::contact::restitution::apply_restitution;
 use crate::contact::safeguard::safeguard;
 use crate::contact::time_step::ContactCounters;
 use crate::fields::update_fields;
-use crate::input::frame::FrameInput;
+use crate::input::frame::{ClothFrame, FrameInput};
 use crate::input::validation::{InvalidInput, sanitize};
 use crate::integrate::aerodynamics::update_normals;
 use crate::integrate::local_wind::{Objects, update_local_wind};
@@ -304,48 +304,23 @@ fn apply_pass<R: CompiledReal>(
 ) {
     let TimeStep { frame, schedule, span, .. } = *now;
     let end = PassTime { at: span.to, length: schedule.h };
+    if !matches!(pass, Pass::ClothContact | Pass::ColliderContact | Pass::Safeguard) {
+        observer.enter(Stage::Constraints);
+    }
     match pass {
-        Pass::Constraints(sweeps) => {
-            observer.enter(Stage::Constraints);
-            let sweeps = &schedule.sweeps[sweeps.clone()];
-            sweep(
-                &solver.model.cloths,
-                [&mut solver.state.displacement, &mut solver.state.corrections],
-                sweeps,
-                (now.direction, now.alternates),
-                &solver.pool,
-            );
-        }
-        Pass::AngularMomentum(cloth) => {
-            observer.enter(Stage::Constraints);
-            let (own, settings) = (&solver.model.cloths[*cloth], &frame.cloths[*cloth]);
-            if keeps_angular_momentum(own, &settings.pressure, now.alternates[*cloth]) {
-                keep_angular_momentum(own, &mut solver.state, schedule.h);
-            }
-        }
+        Pass::Constraints(sweeps) => sweep_constraints(solver, now, sweeps.clone()),
+        Pass::AngularMomentum(cloth) => restore_angular_momentum(solver, now, *cloth),
         Pass::Whole(at) => {
-            observer.enter(Stage::Constraints);
-            let effect = &schedule.wholes[*at];
-            whole::relax(effect, &solver.model.cloths, &mut solver.state, frame, end, &solver.pool);
+            let Solver { model, state, pool, .. } = solver;
+            whole::relax(&schedule.wholes[*at], &model.cloths, state, frame, end, pool);
         }
-        Pass::Tethers(cloth) => {
-            observer.enter(Stage::Constraints);
-            let settings = &frame.cloths[*cloth];
-            if let (Some(tethers), Some(scale)) = (solver.tethers.get(*cloth), settings.tethers) {
-                let scale = scale.max(0.0) * settings.rest_length_scale.max(0.0);
-                let model = &solver.model.cloths[*cloth];
-                tethers.relax(model, &mut solver.state.displacement, scale, &solver.pool);
-            }
-        }
+        Pass::Tethers(cloth) => relax_tethers(solver, &frame.cloths[*cloth], *cloth),
         Pass::Links(at) => {
-            observer.enter(Stage::Constraints);
             let Solver { model, state, contact, links, pool, .. } = solver;
-            let sweep = &schedule.links[*at];
             let read = (&*model, &contact.collider_states[..], frame);
-            relax_links(links, sweep, read, state, end, pool);
+            relax_links(links, &schedule.links[*at], read, state, end, pool);
         }
         Pass::Liquid(cloth) => {
-            observer.enter(Stage::Constraints);
             let scene = LiquidScene { model: &solver.model, contact: &solver.contact, frame };
             solver.liquids[*cloth].relax(*cloth, scene, &mut solver.state, schedule.h, span, &solver.pool);
         }
@@ -360,5 +335,29 @@ fn apply_pass<R: CompiledReal>(
             resolve_collider_contacts(pass, 1.0, observer);
         }
         Pass::Safeguard => safeguard(&mut solver.contact_pass(frame, schedule, span, counters), observer),
+    }
+}
+
+/// Some sweeps of the constraints of cloth, one after the other.
+fn sweep_constraints<R: CompiledReal>(solver: &mut Solver<R>, now: &TimeStep<'_, R>, sweeps: Range<usize>) {
+    let Solver { model, state, pool, .. } = solver;
+    let columns = [&mut state.displacement[..], &mut state.corrections[..]];
+    sweep(&model.cloths, columns, &now.schedule.sweeps[sweeps], (now.direction, now.alternates), pool);
+}
+
+/// Gives a cloth the angular momentum back that its sweeps have changed.
+fn restore_angular_momentum<R: CompiledReal>(solver: &mut Solver<R>, now: &TimeStep<'_, R>, cloth: usize) {
+    let (own, settings) = (&solver.model.cloths[cloth], &now.frame.cloths[cloth]);
+    if keeps_angular_momentum(own, &settings.pressure, now.alternates[cloth]) {
+        keep_angular_momentum(own, &mut solver.state, now.schedule.h);
+    }
+}
+
+/// Pulls the points of a cloth back within the reach of their pins.
+fn relax_tethers<R: CompiledReal>(solver: &mut Solver<R>, settings: &ClothFrame, cloth: usize) {
+    if let (Some(tethers), Some(scale)) = (solver.tethers.get(cloth), settings.tethers) {
+        let scale = scale.max(0.0) * settings.rest_length_scale.max(0.0);
+        let Solver { model, state, pool, .. } = solver;
+        tethers.relax(&model.cloths[cloth], &mut state.displacement, scale, pool);
     }
 }

@@ -68,6 +68,7 @@ pub fn update_local_wind<R: Real>(
         Vector3::from(anchor[row as usize]) + Vector3::from(moved)
     };
     let added = DisjointSlice::new(added_wind);
+    let air = LocalAir { wind: frame.wind, gusts, shadows, pushes };
     for (at, (cloth, settings)) in objects.cloths.iter().zip(&frame.cloths).enumerate() {
         if !feels_wind(cloth, settings) {
             continue;
@@ -82,21 +83,35 @@ pub fn update_local_wind<R: Real>(
                 let mut places = [Vector3::zeros(); RAYS];
                 let places = &mut places[..run.len()];
                 (start..).zip(&mut *places).for_each(|(row, own)| *own = place(row));
-                let mut shares = [1.0; RAYS];
-                shadows
-                    .iter()
-                    .for_each(|shadow| shadow.shade(places, [at as u32, start - first], &mut shares));
-                for ((place, share), added) in places.iter().zip(shares).zip(run) {
-                    let mut wind = frame.wind;
-                    wind += gusts.as_ref().map_or(Vector3::zeros(), |gusts| gusts.at(*place));
-                    wind *= share;
-                    for push in pushes.iter().filter(|push| push.cloth != Some(at)) {
-                        wind = push.blend(wind, *place);
-                    }
-                    *added = Row4::new((wind - frame.wind).into(), R::ZERO);
-                }
+                air.add_to(run, places, [at, (start - first) as usize]);
             }
         });
+    }
+}
+
+/// The air around the points of cloth.
+struct LocalAir<'a> {
+    wind: Vector3<f64>,
+    gusts: Option<GustField>,
+    shadows: Vec<WindShadow<'a>>,
+    pushes: Vec<AirPush<'a>>,
+}
+
+impl LocalAir<'_> {
+    /// Sets what is added to the wind at up to [`RAYS`] points in a row, given their places; `first` is the first of them, by the
+    /// index of its cloth and in that.
+    fn add_to<R: Real>(&self, added: &mut [Row4<R>], places: &[Vector3<f64>], [at, first]: [usize; 2]) {
+        let mut shares = [1.0; RAYS];
+        self.shadows.iter().for_each(|shadow| shadow.shade(places, [at as u32, first as u32], &mut shares));
+        for ((place, share), added) in places.iter().zip(shares).zip(added) {
+            let mut wind = self.wind;
+            wind += self.gusts.as_ref().map_or(Vector3::zeros(), |gusts| gusts.at(*place));
+            wind *= share;
+            for push in self.pushes.iter().filter(|push| push.cloth != Some(at)) {
+                wind = push.blend(wind, *place);
+            }
+            *added = Row4::new((wind - self.wind).into(), R::ZERO);
+        }
     }
 }
 

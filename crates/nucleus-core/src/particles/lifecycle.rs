@@ -159,7 +159,7 @@ fn add_births<R: Real>(
     now: PassTime,
     counters: &mut ContactCounters,
 ) {
-    let Solver { model, state, contact, pool, .. } = solver;
+    let Solver { model, state, contact, .. } = &mut *solver;
     let PassTime { at: end, length: h } = now;
     let mut births = state.populations[index].due(&frame.births, end).peekable();
     if births.peek().is_none() {
@@ -209,8 +209,19 @@ fn add_births<R: Real>(
             false => counters.deaths += 1,
         }
     }
-    let living = state.populations[index].len();
-    let last = row_of + living as u32;
+    begin_newborn(solver, index, first, (frame, end));
+}
+
+/// Has the particles of a population from a row on, which are new, take part in contact and fields.
+fn begin_newborn<R: Real>(
+    solver: &mut Solver<R>,
+    index: usize,
+    first: u32,
+    (frame, end): (&FrameInput, f64),
+) {
+    let Solver { model, state, contact, pool, .. } = solver;
+    let (cloth, living) = (state.populations[index].cloth(), state.populations[index].len());
+    let last = model.cloths[cloth].blocks.rows().start + living as u32;
     if last > first {
         model.cloths[cloth].resize(living);
         begin_contact_of(state, contact, cloth, first..last);

@@ -11,7 +11,7 @@
 use crate::constraints::stretch::LinkStrength;
 use crate::contact::collider::ColliderState;
 use crate::input::frame::FrameInput;
-use crate::input::links::ConstraintFrame;
+use crate::input::links::{ConstraintFrame, Link};
 use crate::math::Real;
 use crate::state::State;
 
@@ -19,7 +19,7 @@ use super::ends::{Ends, Prescribed, start_vector, vector};
 use super::lists::{ConstraintLinks, Links, Models};
 use super::placed::{Direction, Placed};
 use super::sweep::LinkSweep;
-use super::topology::SurfaceId;
+use super::topology::{SurfaceId, SurfaceRow};
 
 /// Share of a vector below which its part along a surface is rounding, which has no direction.
 const ROUNDING: f64 = 1e-12;
@@ -122,17 +122,8 @@ impl<R: Real> ConstraintLinks<R> {
         if mobility <= 0.0 {
             return;
         }
-        let is_physical = self.layout.is_physical;
         let dropped = frame.dropoff.map_or(1.0, |dropoff| dropoff.at(d.norm()));
-        let pull = |strength: &LinkStrength<R>, factor: f64, c: f64| {
-            let factor = factor * dropped;
-            let LinkStrength { share, compliance, .. } = strength;
-            let sides =
-                if c > 0.0 { [share.above, compliance.above] } else { [share.below, compliance.below] };
-            let [share, compliance] = sides.map(R::to_f64);
-            let softened = if is_physical { factor } else { 1.0 } * mobility + compliance;
-            if softened > 0.0 { share * factor * c / softened } else { 0.0 }
-        };
+        let projection = Projection { mobility, dropped, is_physical: self.layout.is_physical };
         let lambda = match direction {
             Direction::Tangent => {
                 let travel = prescribed.vector(link, time) - prescribed.vector(link, from);
@@ -141,28 +132,57 @@ impl<R: Real> ConstraintLinks<R> {
                     false => d.dot(&unit),
                 };
                 // A count of friction is a share of the motion: it has no strength that a component could scale.
-                let is_share = frame.slides && !is_physical;
-                pull(&sweep.tangent, if is_share { 1.0 } else { link.tangent_strength }, length)
+                let is_share = frame.slides && !projection.is_physical;
+                projection.pull(&sweep.tangent, if is_share { 1.0 } else { link.tangent_strength }, length)
             }
-            Direction::Normal => {
-                // A sliding point without a fixed side keeps the distance on the side where it is now.
-                let is_sided = frame.single_sided || !frame.slides;
-                let side = if is_sided { 1.0 } else { along.signum() * link.rest.signum() };
-                let rest = link.rest * side * frame.rest_scale_at(time);
-                let outward = if rest == 0.0 { along.signum() } else { rest.signum() };
-                let beyond = (along * outward - rest.abs().max(row.contact_distance)).max(0.0);
-                let c = if (along - rest) * outward > 0.0 { beyond * outward } else { along - rest };
-                let lambda = pull(&sweep.normal, link.strength, c);
-                // Beyond the spring: on its side, a point stays outside of the kept distance, unless it started nearer.
-                let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
-                let after = (along - lambda * mobility) * sign;
-                let short =
-                    frame.keep_off.map_or(0.0, |keep_off| (keep_off.min(link.rest.abs()) - after).max(0.0));
-                lambda - sign * short / mobility
-            }
+            Direction::Normal => projection.along_normal(sweep, (link, row), (frame, time), along),
         };
         gradient.displace(&mut state.displacement, -lambda);
         self.surface[k].impulse += unit * (lambda / h);
+    }
+}
+
+/// The projection of a link on a surface in one direction.
+struct Projection {
+    /// How far a unit push changes its length, in 1/kg.
+    mobility: f64,
+    /// The factor on its strength over its length.
+    dropped: f64,
+    is_physical: bool,
+}
+
+impl Projection {
+    /// The push that takes from an error `c` in metres what a strength with a factor takes.
+    fn pull<R: Real>(&self, strength: &LinkStrength<R>, factor: f64, c: f64) -> f64 {
+        let factor = factor * self.dropped;
+        let LinkStrength { share, compliance, .. } = strength;
+        let sides = if c > 0.0 { [share.above, compliance.above] } else { [share.below, compliance.below] };
+        let [share, compliance] = sides.map(R::to_f64);
+        let softened = if self.is_physical { factor } else { 1.0 } * self.mobility + compliance;
+        if softened > 0.0 { share * factor * c / softened } else { 0.0 }
+    }
+
+    /// The push along the normal, at this distance along it.
+    fn along_normal<R: Real>(
+        &self,
+        sweep: &LinkSweep<R>,
+        (link, row): (&Link, &SurfaceRow),
+        (frame, time): (&ConstraintFrame, f64),
+        along: f64,
+    ) -> f64 {
+        // A sliding point without a fixed side keeps the distance on the side where it is now.
+        let is_sided = frame.single_sided || !frame.slides;
+        let side = if is_sided { 1.0 } else { along.signum() * link.rest.signum() };
+        let rest = link.rest * side * frame.rest_scale_at(time);
+        let outward = if rest == 0.0 { along.signum() } else { rest.signum() };
+        let beyond = (along * outward - rest.abs().max(row.contact_distance)).max(0.0);
+        let c = if (along - rest) * outward > 0.0 { beyond * outward } else { along - rest };
+        let lambda = self.pull(&sweep.normal, link.strength, c);
+        // Beyond the spring: on its side, a point stays outside of the kept distance, unless it started nearer.
+        let sign = if link.rest * side < 0.0 { -1.0 } else { 1.0 };
+        let after = (along - lambda * self.mobility) * sign;
+        let short = frame.keep_off.map_or(0.0, |keep_off| (keep_off.min(link.rest.abs()) - after).max(0.0));
+        lambda - sign * short / self.mobility
     }
 }
 

@@ -75,9 +75,28 @@ fn is_plane(origin: &Vector3<f64>, normal: &Vector3<f64>) -> bool {
 }
 
 pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
-    let default = ClothFrame::default();
     let vectors = sanitize_vectors([&mut cloth.local_force, &mut cloth.local_wind]);
-    let numbers = sanitize_numbers([
+    let numbers = sanitize_cloth_numbers(cloth);
+    let below_zero = raise_cloth_to_zero(cloth);
+    let tethers = cloth.tethers.as_mut().is_some_and(|scale| sanitize_numbers([(scale, 1.0)]));
+    let fields = tethers
+        | cloth.field.as_mut().is_some_and(sanitize_field)
+        | cloth.point_field.as_mut().is_some_and(sanitize_point_field)
+        | sanitize_wind_field(&mut cloth.wind_field)
+        | sanitize_liquid(&mut cloth.liquid);
+    let yields = sanitize_yields(cloth);
+    vectors
+        | numbers
+        | below_zero
+        | yields
+        | fields
+        | sanitize_stiffness(&mut cloth.stiffness)
+        | sanitize_pressure(&mut cloth.pressure)
+}
+
+fn sanitize_cloth_numbers(cloth: &mut ClothFrame) -> bool {
+    let default = ClothFrame::default();
+    sanitize_numbers([
         (&mut cloth.stretch_resistance, default.stretch_resistance),
         (&mut cloth.compression_resistance, default.compression_resistance),
         (&mut cloth.shear_resistance, default.shear_resistance),
@@ -110,8 +129,11 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         (&mut cloth.input_attract.damp, 0.0),
         (&mut cloth.input_attract.motion_drag, 0.0),
         (&mut cloth.self_collision.thickness, default.self_collision.thickness),
-    ]);
-    let below_zero = raise_to_zero([
+    ])
+}
+
+fn raise_cloth_to_zero(cloth: &mut ClothFrame) -> bool {
+    raise_to_zero([
         &mut cloth.stretch_resistance,
         &mut cloth.compression_resistance,
         &mut cloth.shear_resistance,
@@ -132,21 +154,7 @@ pub(super) fn sanitize_cloth(cloth: &mut ClothFrame) -> bool {
         &mut cloth.input_attract.strength,
         &mut cloth.input_attract.damp,
         &mut cloth.self_collision.thickness,
-    ]);
-    let tethers = cloth.tethers.as_mut().is_some_and(|scale| sanitize_numbers([(scale, 1.0)]));
-    let fields = tethers
-        | cloth.field.as_mut().is_some_and(sanitize_field)
-        | cloth.point_field.as_mut().is_some_and(sanitize_point_field)
-        | sanitize_wind_field(&mut cloth.wind_field)
-        | sanitize_liquid(&mut cloth.liquid);
-    let yields = sanitize_yields(cloth);
-    vectors
-        | numbers
-        | below_zero
-        | yields
-        | fields
-        | sanitize_stiffness(&mut cloth.stiffness)
-        | sanitize_pressure(&mut cloth.pressure)
+    ])
 }
 
 /// Replaces numbers below zero by zero, of attributes that would create energy or push the wrong way below it.
