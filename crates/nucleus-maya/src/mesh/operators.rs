@@ -74,43 +74,23 @@ pub(crate) fn apply(
     let picked = || {
         scene.value(id, &["ics", "inputComponents"]).map(|values| Components::of(&values)).unwrap_or_default()
     };
-    let unit = scene.units_of(id).centimetres;
+    let divisions = || scene.count_or(id, &["dv", "divisions"], 1).min(6);
     match kind {
         _ if PASSED_OVER.contains(&kind) => {}
-        "polyTweak" => {
-            let parts: [&[&str]; 3] = [&["tx", "tweakX"], &["ty", "tweakY"], &["tz", "tweakZ"]];
-            let offsets = scene.array(id, &["tk", "tweak"], 3, &parts).unwrap_or_default();
-            embedded::add(&mut mesh.points, &offsets, unit);
-        }
-        "transformGeometry" => {
-            if let Some(matrix) = scene.matrix(id, &["txf", "transform"], None) {
-                let matrix = Matrix::of_rows(matrix);
-                mesh.points.iter_mut().for_each(|point| *point = matrix.point(*point));
-            }
-        }
-        "polyMoveVertex" => {
-            let by = scene.stored_vector(id, TRANSLATE, [0.0; 3]).map(|x| x * unit);
-            let flags = picked().flags("vtx", mesh.points.len());
-            for (point, _) in mesh.points.iter_mut().zip(flags).filter(|(_, picked)| *picked) {
-                (0..3).for_each(|k| point[k] += by[k]);
-            }
-        }
+        "polyTweak" => tweak(scene, id, &mut mesh),
+        "transformGeometry" => transform(scene, id, &mut mesh),
+        "polyMoveVertex" => move_points(scene, id, &mut mesh, &picked()),
         "polyNormal" => mesh = reversed(&mesh, &picked()),
         "polyTriangulate" => mesh = triangulated(&mesh, &picked()),
+        "polySmoothFace" if !subdivide::is_whole(&mesh, &picked()) => return Ok(Operation::Unknown(mesh)),
         "polySmoothFace" => {
-            let divisions = scene.count_or(id, &["dv", "divisions"], 1).min(6);
-            let picked = picked();
-            if !subdivide::is_whole(&mesh, &picked) {
-                return Ok(Operation::Unknown(mesh));
-            }
-            for _ in 0..divisions {
+            for _ in 0..divisions() {
                 mesh = subdivide::smooth(&mesh, budget)?;
             }
         }
         "polySubdFace" => {
-            let divisions = scene.count_or(id, &["dv", "divisions"], 1).min(6);
             let mut picked = picked().flags("f", mesh.face_count());
-            for _ in 0..divisions {
+            for _ in 0..divisions() {
                 (mesh, picked) = subdivide::split(&mesh, &picked, budget)?;
             }
         }
@@ -131,21 +111,49 @@ pub(crate) fn apply(
             mesh = split;
         }
         "polyMergeVert" => {
-            let distance = scene.stored_or(id, &["d", "distance"], 1e-4) * unit;
+            let distance = scene.stored_or(id, &["d", "distance"], 1e-4) * scene.units_of(id).centimetres;
             mesh = merged(&mesh, &picked(), distance);
         }
-        "deleteComponent" => {
-            let values = scene.value(id, &["dc", "deleteComponents"]);
-            let list = values.map(|values| Components::of(&values)).unwrap_or_default();
-            if list.has_other_than("f") {
-                return Ok(Operation::Unknown(mesh));
-            }
-            mesh = without_faces(&mesh, &list.flags("f", mesh.face_count()));
-        }
+        "deleteComponent" => match without_deleted(scene, id, &mesh) {
+            Some(left) => mesh = left,
+            None => return Ok(Operation::Unknown(mesh)),
+        },
         "polyCloseBorder" => mesh = closed(&mesh),
         _ => return Ok(Operation::Unknown(mesh)),
     }
     Ok(Operation::Done(mesh))
+}
+
+/// Adds the offsets of single points.
+fn tweak(scene: &MayaScene, id: NodeId, mesh: &mut Poly) {
+    let parts: [&[&str]; 3] = [&["tx", "tweakX"], &["ty", "tweakY"], &["tz", "tweakZ"]];
+    let offsets = scene.array(id, &["tk", "tweak"], 3, &parts).unwrap_or_default();
+    embedded::add(&mut mesh.points, &offsets, scene.units_of(id).centimetres);
+}
+
+/// Moves all points by a matrix.
+fn transform(scene: &MayaScene, id: NodeId, mesh: &mut Poly) {
+    if let Some(matrix) = scene.matrix(id, &["txf", "transform"], None) {
+        let matrix = Matrix::of_rows(matrix);
+        mesh.points.iter_mut().for_each(|point| *point = matrix.point(*point));
+    }
+}
+
+/// Moves the picked points alike.
+fn move_points(scene: &MayaScene, id: NodeId, mesh: &mut Poly, picked: &Components) {
+    let unit = scene.units_of(id).centimetres;
+    let by = scene.stored_vector(id, TRANSLATE, [0.0; 3]).map(|x| x * unit);
+    let flags = picked.flags("vtx", mesh.points.len());
+    for (point, _) in mesh.points.iter_mut().zip(flags).filter(|(_, picked)| *picked) {
+        (0..3).for_each(|k| point[k] += by[k]);
+    }
+}
+
+/// The mesh without the faces that are deleted; `None` if anything else is.
+fn without_deleted(scene: &MayaScene, id: NodeId, mesh: &Poly) -> Option<Poly> {
+    let values = scene.value(id, &["dc", "deleteComponents"]);
+    let list = values.map(|values| Components::of(&values)).unwrap_or_default();
+    (!list.has_other_than("f")).then(|| without_faces(mesh, &list.flags("f", mesh.face_count())))
 }
 
 fn reversed(mesh: &Poly, picked: &Components) -> Poly {

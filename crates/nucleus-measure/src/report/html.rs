@@ -114,9 +114,11 @@ fn pictures(pictures: &[Picture]) -> Markup {
     }
 }
 
-/// Group of settings with one colour: reading and substeps.
-fn family(setting: &Setting) -> (Reading, u32) {
-    (setting.reading, setting.substeps)
+/// Settings with one colour: whether their reading is Classic, and their substeps.
+type Family = (bool, u32);
+
+fn family(setting: &Setting) -> Family {
+    (setting.reading == Reading::Classic, setting.substeps)
 }
 
 /// The bound of an error that the references do not resolve, where it is above the largest that they do.
@@ -128,70 +130,69 @@ fn known_below(point: &Point) -> Option<f64> {
 /// Error against time.
 fn trade_chart(page: &Page) -> Markup {
     let trade = page.trade;
-    let families: BTreeSet<(bool, u32)> = trade
-        .points
-        .iter()
-        .map(|point| family(&point.setting))
-        .map(|(reading, substeps)| (reading == Reading::Classic, substeps))
-        .collect();
-    let families: Vec<(bool, u32)> = families.into_iter().collect();
-    let colour = |setting: &Setting| {
-        let (reading, substeps) = family(setting);
-        families.iter().position(|of| *of == (reading == Reading::Classic, substeps)).unwrap_or(0)
-    };
-    let known = |point: &Point| point.error.map(|error| [point.ms, error.max(1e-7)]);
-    let dot = |point: &Point| {
-        let at = known(point)?;
-        let is_best = page.recommended.is_some_and(|best| best.setting == point.setting);
-        let label = match (is_best, point.setting == trade.own) {
-            (true, true) => Some("recommended, and the scene's own"),
-            (true, false) => Some("recommended"),
-            (false, true) => Some("the scene's own"),
-            (false, false) => None,
-        };
-        let trouble = point.trouble().map(|trouble| format!("\n{trouble}")).unwrap_or_default();
-        Some(Dot {
-            at,
-            up_to: known_below(point),
-            colour: colour(&point.setting),
-            is_sound: point.is_sound(),
-            title: format!(
-                "{}\n{} ms, {}\n{}{trouble}",
-                point.setting,
-                figure(point.ms),
-                percent(at[1]),
-                errors_of(point)
-            ),
-            label: label.map(str::to_owned),
-        })
-    };
-    let errors = trade.points.iter().filter_map(known).map(|[_, error]| error);
+    let families: BTreeSet<Family> = trade.points.iter().map(|point| family(&point.setting)).collect();
+    let families: Vec<Family> = families.into_iter().collect();
+    let errors = trade.points.iter().filter_map(place).map(|[_, error]| error);
     let errors = errors.chain(trade.points.iter().filter_map(known_below));
     let chart = Chart {
         x: Axis::log("milliseconds per frame, on one core", trade.points.iter().map(|point| point.ms)),
         y: Axis::log("error: the largest that the references resolve", errors).in_percent(),
-        dots: trade.points.iter().filter_map(dot).collect(),
-        lines: vec![Line { through: trade.frontier().filter_map(known).collect(), class: "frontier" }],
+        dots: trade.points.iter().filter_map(|point| dot(page, &families, point)).collect(),
+        lines: vec![Line { through: trade.frontier().filter_map(place).collect(), class: "frontier" }],
         floor: None,
         mark: None,
     };
-    let reading = |is_classic: bool| if is_classic { "Classic, " } else { "" };
-    let plural = |substeps: u32| if substeps == 1 { "" } else { "s" };
     html! {
         h2 { "Error against time" }
         div.chart {
             (chart.svg())
-            div.key {
-                @for (index, &(is_classic, substeps)) in families.iter().enumerate() {
-                    span {
-                        i style={ "background:var(--c" (index % 6) ")" } {}
-                        (reading(is_classic)) (substeps) " substep" (plural(substeps))
-                    }
+            (trade_key(trade, &families))
+        }
+    }
+}
+
+/// Time and error of a setting, where its error is known.
+fn place(point: &Point) -> Option<[f64; 2]> {
+    point.error.map(|error| [point.ms, error.max(1e-7)])
+}
+
+/// The dot of a setting.
+fn dot(page: &Page, families: &[Family], point: &Point) -> Option<Dot> {
+    let at = place(point)?;
+    let is_best = page.recommended.is_some_and(|best| best.setting == point.setting);
+    let label = match (is_best, point.setting == page.trade.own) {
+        (true, true) => Some("recommended, and the scene's own"),
+        (true, false) => Some("recommended"),
+        (false, true) => Some("the scene's own"),
+        (false, false) => None,
+    };
+    let trouble = point.trouble().map(|trouble| format!("\n{trouble}")).unwrap_or_default();
+    let [ms, error] = [figure(point.ms), percent(at[1])];
+    Some(Dot {
+        at,
+        up_to: known_below(point),
+        colour: families.iter().position(|of| *of == family(&point.setting)).unwrap_or(0),
+        is_sound: point.is_sound(),
+        title: format!("{}\n{ms} ms, {error}\n{}{trouble}", point.setting, errors_of(point)),
+        label: label.map(str::to_owned),
+    })
+}
+
+/// What the colours and lines of the chart mean.
+fn trade_key(trade: &Trade, families: &[Family]) -> Markup {
+    let reading = |is_classic: bool| if is_classic { "Classic, " } else { "" };
+    let plural = |substeps: u32| if substeps == 1 { "" } else { "s" };
+    html! {
+        div.key {
+            @for (index, &(is_classic, substeps)) in families.iter().enumerate() {
+                span {
+                    i style={ "background:var(--c" (index % 6) ")" } {}
+                    (reading(is_classic)) (substeps) " substep" (plural(substeps))
                 }
-                span { i style="border:2px solid var(--bad)" {} "not sound" }
-                @if trade.points.iter().any(|point| known_below(point).is_some()) {
-                    span { "line above a dot: in a quantity that the references do not resolve, the error may be as large" }
-                }
+            }
+            span { i style="border:2px solid var(--bad)" {} "not sound" }
+            @if trade.points.iter().any(|point| known_below(point).is_some()) {
+                span { "line above a dot: in a quantity that the references do not resolve, the error may be as large" }
             }
         }
     }
