@@ -120,12 +120,12 @@ impl ThreadPool {
         });
     }
 
-    /// The least value of some items, infinity without any.
-    pub fn least<T: Sync>(&self, items: &[T], value: impl Fn(&T) -> f64 + Sync) -> f64 {
+    /// The least value of items that are given by their index, infinity without any.
+    pub fn least(&self, count: usize, value: impl Fn(usize) -> f64 + Sync) -> f64 {
         let least = Mutex::new(f64::INFINITY);
-        self.parallel_for(items.len().div_ceil(ITEMS_PER_TASK), |task| {
-            let own = items.chunks(ITEMS_PER_TASK).nth(task).unwrap_or_default();
-            let own = own.iter().map(&value).fold(f64::INFINITY, f64::min);
+        self.parallel_for(count.div_ceil(ITEMS_PER_TASK), |task| {
+            let own = task * ITEMS_PER_TASK..count.min((task + 1) * ITEMS_PER_TASK);
+            let own = own.map(&value).fold(f64::INFINITY, f64::min);
             let mut least = least.lock().unwrap_or_else(PoisonError::into_inner);
             *least = least.min(own);
         });
@@ -270,7 +270,7 @@ mod tests {
             for least in [0, items / 2, items.saturating_sub(1)] {
                 let values: Vec<f64> = (0..items).map(|at| at.abs_diff(least) as f64 - 1.0).collect();
                 let expected = if items == 0 { f64::INFINITY } else { -1.0 };
-                assert_eq!(pool.least(&values, |value| *value), expected, "{least} of {items}");
+                assert_eq!(pool.least(values.len(), |at| values[at]), expected, "{least} of {items}");
             }
         }
     }

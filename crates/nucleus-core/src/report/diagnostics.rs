@@ -15,7 +15,6 @@ use crate::constraints::stretch::LinkGroup;
 use crate::constraints::weave::{self, WeaveGroup};
 use crate::contact::cloth::contact::ClothStep;
 use crate::contact::cloth::contacts::ClothContacts;
-use crate::contact::collider::contact::ColliderContact;
 use crate::contact::pair_filter::PairFilter;
 use crate::contact::system::ContactSystem;
 use crate::contact::time_step::{ColliderStepArgs, ContactCounters};
@@ -329,11 +328,8 @@ fn smallest_gap<R: Real>(solver: &mut Solver<R>, ground_gap: f64, schedule: &Sch
             interval: list.interval,
         };
         let step = view.of(state, &collider_states[list.collider]);
-        let ratio = |contact: &ColliderContact<R, 1, 3>| match contact.is_vacant() {
-            true => f64::INFINITY,
-            false => contact.gap_ratio(&step),
-        };
-        least = least.min(pool.least(&list.point_face, ratio));
+        let ratio = |at| list.point_face.at(at).map_or(f64::INFINITY, |contact| contact.gap_ratio(&step));
+        least = least.min(pool.least(list.point_face.len(), ratio));
     }
     least
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::collider::contact::ColliderContact;
-use crate::contact::collider::contact_list::PLACES_PER_TASK;
+use crate::contact::collider::contact_list::{ContactList, IdleUntil, PLACES_PER_TASK};
 use crate::contact::collider::motion_bounds::MotionBounds;
 use crate::contact::collider::plane_columns::{FourPlanes, PlaneColumns};
 use crate::contact::collider::selected::{Ranks, Selected, merge};
@@ -36,9 +36,9 @@ impl<R: Real> ActiveSet<R> {
     pub(super) fn select(
         &mut self,
         selection: &Selection<'_, R>,
-        point_face: &mut [ColliderContact<R, 1, 3>],
-        edge_edge: &mut [ColliderContact<R, 2, 2>],
-        face_point: &mut [ColliderContact<R, 3, 1>],
+        point_face: &mut ContactList<R, 1, 3>,
+        edge_edge: &mut ContactList<R, 2, 2>,
+        face_point: &mut ContactList<R, 3, 1>,
         pool: &ThreadPool,
     ) {
         let counts @ [all_points, all_edges, all_faces] =
@@ -50,11 +50,7 @@ impl<R: Real> ActiveSet<R> {
         let own = |task: usize, contacts: usize| {
             (task * PLACES_PER_TASK) as u32..((task + 1) * PLACES_PER_TASK).min(contacts) as u32
         };
-        let lists = (
-            DisjointSlice::new(&mut *point_face),
-            DisjointSlice::new(edge_edge),
-            DisjointSlice::new(face_point),
-        );
+        let lists = (shared(point_face), shared(edge_edge), shared(face_point));
         pool.parallel_for(of_points + of_edges + of_faces, |task| {
             if let Some(task) = task.checked_sub(of_points + of_edges) {
                 selection.select(lists.2, own(task, all_faces), (faces, task));
@@ -204,6 +200,15 @@ impl<R: Real, const N: usize> ActiveContacts<R, N> {
     }
 }
 
+/// The columns of a list of contacts, which tasks share.
+type Columns<'a, R, const N: usize, const M: usize> =
+    (DisjointSlice<'a, ColliderContact<R, N, M>>, DisjointSlice<'a, IdleUntil<R, N>>);
+
+fn shared<R: Real, const N: usize, const M: usize>(contacts: &mut ContactList<R, N, M>) -> Columns<'_, R, N, M> {
+    let (places, idle) = contacts.columns_mut();
+    (DisjointSlice::new(places), DisjointSlice::new(idle))
+}
+
 /// Share of the interaction range by which the gap of an idle contact must exceed it.
 const IDLE_MARGIN: f64 = 1e-3;
 
@@ -223,7 +228,7 @@ impl<R: Real> Selection<'_, R> {
     /// Selects the contacts that are active, among those whose indices are given, for a task.
     pub(super) fn select<const N: usize, const M: usize>(
         &self,
-        contacts: DisjointSlice<'_, ColliderContact<R, N, M>>,
+        (contacts, idle): Columns<'_, R, N, M>,
         among: Range<u32>,
         (results, task): (DisjointSlice<'_, Selected>, usize),
     ) {
@@ -232,14 +237,14 @@ impl<R: Real> Selection<'_, R> {
         let [found] = (unsafe { results.run(task as u32..task as u32 + 1) }) else { return };
         found.clear();
         let [range, certified] = self.range;
-        for index in among {
-            // SAFETY: a contact belongs to one task.
-            #[allow(unsafe_code)]
-            let [contact] = (unsafe { contacts.run(index..index + 1) }) else { continue };
-            if contact.is_vacant() || self.growth.is_some_and(|growth| contact.is_idle(growth)) {
+        // SAFETY: a contact belongs to one task.
+        #[allow(unsafe_code)]
+        let (contacts, idle) = unsafe { (contacts.run(among.clone()), idle.run(among.clone())) };
+        for ((index, contact), idle) in among.zip(contacts).zip(idle) {
+            if idle.is_vacant() || self.growth.is_some_and(|growth| idle.is_idle(growth)) {
                 continue;
             }
-            let gap = self.min_gap(contact);
+            let gap = self.min_gap(contact, idle);
             if gap < range && self.is_acting(contact) {
                 let task = ActiveContacts::<R, N>::task_of(contact.points, self.blocks);
                 found.push(task, index, gap > certified);
@@ -249,12 +254,16 @@ impl<R: Real> Selection<'_, R> {
 
     /// The smallest gap of a contact over the window; notes until when the contact is idle.
     #[inline(always)]
-    fn min_gap<const N: usize, const M: usize>(&self, contact: &mut ColliderContact<R, N, M>) -> R {
+    fn min_gap<const N: usize, const M: usize>(
+        &self,
+        contact: &ColliderContact<R, N, M>,
+        idle: &mut IdleUntil<R, N>,
+    ) -> R {
         let Some(growth) = self.growth else { return contact.min_gap(self.window, self.bounds) };
         // Around a collider at rest the gap is the same at both ends of the window.
         let gap = contact.min_gap([self.window[0]], self.bounds);
         let rounding = R::EPSILON * R::from_f64(16.0) * (gap + R::ONE);
-        contact.set_idle(gap - self.range[0] * R::from_f64(1.0 + IDLE_MARGIN) - rounding, growth);
+        idle.set(gap - self.range[0] * R::from_f64(1.0 + IDLE_MARGIN) - rounding, growth);
         gap
     }
 

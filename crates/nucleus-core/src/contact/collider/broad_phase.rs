@@ -112,7 +112,7 @@ fn interval_end<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> f64 {
         false => 0..0, // one step at any speed
     };
     let rows = &pass.state.velocity[points.start as usize..points.end as usize];
-    let least = pass.pool.least(rows, |row| -dot(row.xyz(), row.xyz()).to_f64());
+    let least = pass.pool.least(rows.len(), |at| -dot(rows[at].xyz(), rows[at].xyz()).to_f64());
     let max_speed = (-least).max(0.0).sqrt() * pass.frame.duration;
     let near =
         near_colliders(pass.contact, cloth).map(|collider| pass.contact.collider_states[collider].max_travel);

@@ -45,27 +45,13 @@ pub struct ColliderContact<R, const N: usize, const M: usize> {
     pub(super) surface_motion: [R; 3],
     /// Displacement of the contact when the plane was set.
     plane_origin: [R; 3],
-    /// Growth of the points' window bounds in this frame up to which the contact certainly stays inactive; zero where that
-    /// is not known.
-    idle_until: [R; N],
 }
 
 impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M> {
     const SIZE: usize =
         <[u32; N]>::SIZE + <[u32; M]>::SIZE + 3 * <[R; 3]>::SIZE + 3 * <[R; N]>::SIZE + <[R; 2]>::SIZE;
     fn encode(&self, out: &mut Vec<u8>) {
-        // Each frame begins with no contact known to be idle.
-        let Self {
-            points,
-            collider_points,
-            normal,
-            plane,
-            excess,
-            weights,
-            surface_motion,
-            plane_origin,
-            idle_until: _,
-        } = self;
+        let Self { points, collider_points, normal, plane, excess, weights, surface_motion, plane_origin } = self;
         points.encode(out);
         collider_points.encode(out);
         [*normal, *surface_motion, *plane_origin].encode(out);
@@ -86,7 +72,6 @@ impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M
             weights,
             surface_motion,
             plane_origin,
-            idle_until: [R::ZERO; N],
         })
     }
 }
@@ -137,21 +122,7 @@ pub enum Certificate {
     Inseparable,
 }
 
-/// The points of a vacant place.
-const VACANT: u32 = u32::MAX;
-
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
-    /// Removes the contact, and leaves its place.
-    pub fn vacate(&mut self) {
-        self.points = [VACANT; N];
-    }
-
-    /// Whether the place of a contact is vacant.
-    #[inline(always)]
-    pub fn is_vacant(&self) -> bool {
-        self.points[0] == VACANT
-    }
-
     /// A contact of some points that has no plane yet.
     #[cfg(test)]
     pub(super) fn at(points: [u32; N]) -> Self {
@@ -165,7 +136,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             weights: none,
             surface_motion: zero,
             plane_origin: zero,
-            idle_until: none,
         }
     }
 
@@ -189,7 +159,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             weights: [R::ZERO; N],
             surface_motion: zero,
             plane_origin: zero,
-            idle_until: [R::ZERO; N],
         };
         contact.set_plane_origin(heights, weights, step);
         contact
@@ -208,7 +177,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             weights: [R::ZERO; N],
             surface_motion: zero,
             plane_origin: zero,
-            idle_until: [R::ZERO; N],
         }
     }
 
@@ -225,18 +193,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     /// Whether the contact is on the far side of the surface. `outward` is the pseudonormal there.
     pub fn is_behind(&self, outward: Point) -> bool {
         Point::from(self.normal.map(R::to_f64)).dot(&outward) < 0.0
-    }
-
-    /// Whether the contact certainly stays inactive, given the growth of each point's window bounds in this frame.
-    #[inline(always)]
-    pub fn is_idle(&self, growth: &[R]) -> bool {
-        (0..N).all(|k| growth[self.points[k] as usize] < self.idle_until[k])
-    }
-
-    /// Notes that the gap exceeds the range by `slack` metres, for growth of the bounds by as much; the collider is at rest.
-    #[inline(always)]
-    pub fn set_idle(&mut self, slack: R, growth: &[R]) {
-        self.idle_until = self.points.map(|point| growth[point as usize] + slack);
     }
 
     /// The smallest gap along the plane over the motion bounds of the cloth's points, within a window. The window
@@ -264,7 +220,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 
     /// Rebases the plane on anchors that move to the points' positions; the collider is at rest.
     pub fn shift_anchors(&mut self, moved: &[Row4<R>]) {
-        self.idle_until = [R::ZERO; N];
         for k in 0..N {
             let by = moved[self.points[k] as usize].xyz();
             let along = dot(self.normal, by);
@@ -432,7 +387,6 @@ impl<R: Real> ColliderContact<R, 1, 3> {
             weights: [R::ZERO; 1],
             surface_motion: zero,
             plane_origin: zero,
-            idle_until: [R::ZERO; 1],
         };
         contact.set_plane(normal, ([1.0], weights.unwrap_or([1.0 / 3.0; 3])), step);
         if weights.is_none() {

@@ -124,9 +124,9 @@ impl<R: Real> ColliderContacts<R> {
 
     /// Rebases all planes on anchors that move to the points' positions.
     pub fn shift_anchors(&mut self, moved: &[Row4<R>]) {
-        self.point_face.contacts_mut().for_each(|contact| contact.shift_anchors(moved));
-        self.edge_edge.contacts_mut().for_each(|contact| contact.shift_anchors(moved));
-        self.face_point.contacts_mut().for_each(|contact| contact.shift_anchors(moved));
+        self.point_face.shift_anchors(moved);
+        self.edge_edge.shift_anchors(moved);
+        self.face_point.shift_anchors(moved);
     }
 
     /// Selects the contacts whose gap can fall below the interaction range of the material within a window of the candidate

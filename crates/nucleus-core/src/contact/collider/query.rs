@@ -95,7 +95,7 @@ impl<R: Real> ColliderQuery<'_, R> {
         of: fn(&FoundContacts<R>) -> &FoundPairs<R, N, M>,
         pool: &ThreadPool,
     ) {
-        contacts.remove(|contact| self.has_new_bound(&contact.points), pool);
+        contacts.remove(|points| self.has_new_bound(points), pool);
         contacts.append(found.len(), |task| &of(&found[task]).contacts, pool);
     }
 
