@@ -131,7 +131,10 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
     pub fn min_gap_ratio(&self, step: &ClothStep<'_, R>, pool: &ThreadPool) -> f64 {
         let ratio = |contact: &ClothContact<R, N, M>| contact.gap_ratio(step).to_f64();
         let tasks = [&self.free_points, &self.cloth].into_iter().flat_map(|all| &all.tasks);
-        tasks.map(|task| task.contacts()).map(|all| pool.least(all.len(), |at| ratio(&all[at]))).fold(f64::INFINITY, f64::min)
+        tasks
+            .map(|task| task.contacts())
+            .map(|all| pool.least(all.len(), |at| ratio(&all[at])))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The pair of cloths of each contact that overlaps.

@@ -204,7 +204,9 @@ impl<R: Real, const N: usize> ActiveContacts<R, N> {
 type Columns<'a, R, const N: usize, const M: usize> =
     (DisjointSlice<'a, ColliderContact<R, N, M>>, DisjointSlice<'a, IdleUntil<R, N>>);
 
-fn shared<R: Real, const N: usize, const M: usize>(contacts: &mut ContactList<R, N, M>) -> Columns<'_, R, N, M> {
+fn shared<R: Real, const N: usize, const M: usize>(
+    contacts: &mut ContactList<R, N, M>,
+) -> Columns<'_, R, N, M> {
     let (places, idle) = contacts.columns_mut();
     (DisjointSlice::new(places), DisjointSlice::new(idle))
 }

@@ -267,13 +267,11 @@ fn predict_bounds<R: Real>(
 
 /// Whether a point of the cloth violates its window bound at a time of the frame.
 fn has_violations<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
-    let frame_motion = travel_at(pass.contact.frame_travel[cloth], pass.span.to);
+    let [x, y, z] = travel_at(pass.contact.frame_travel[cloth], pass.span.to);
+    let frame_motion = Row4([x, y, z, R::ZERO]);
     let keeps_bound = |row: u32| {
-        box_contains(
-            &pass.contact.window_bounds[row as usize],
-            pass.state.displacement[row as usize].xyz(),
-            frame_motion,
-        )
+        let (bound, now) = (&pass.contact.window_bounds[row as usize], pass.state.displacement[row as usize]);
+        box_contains(bound, now, frame_motion)
     };
     let any = AtomicBool::new(false);
     let blocks = &pass.model.cloths[cloth].blocks;

@@ -51,7 +51,8 @@ impl<R: Real, const N: usize, const M: usize> Encode for ColliderContact<R, N, M
     const SIZE: usize =
         <[u32; N]>::SIZE + <[u32; M]>::SIZE + 3 * <[R; 3]>::SIZE + 3 * <[R; N]>::SIZE + <[R; 2]>::SIZE;
     fn encode(&self, out: &mut Vec<u8>) {
-        let Self { points, collider_points, normal, plane, excess, weights, surface_motion, plane_origin } = self;
+        let Self { points, collider_points, normal, plane, excess, weights, surface_motion, plane_origin } =
+            self;
         points.encode(out);
         collider_points.encode(out);
         [*normal, *surface_motion, *plane_origin].encode(out);

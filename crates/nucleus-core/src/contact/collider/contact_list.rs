@@ -111,7 +111,9 @@ impl<R: Real, const N: usize, const M: usize> ContactList<R, N, M> {
 
     /// Rebases all planes on anchors that move to the points' positions; the collider is at rest.
     pub fn shift_anchors(&mut self, moved: &[Row4<R>]) {
-        for (contact, idle) in self.places.iter_mut().zip(&mut self.idle).filter(|(_, idle)| !idle.is_vacant()) {
+        for (contact, idle) in
+            self.places.iter_mut().zip(&mut self.idle).filter(|(_, idle)| !idle.is_vacant())
+        {
             contact.shift_anchors(moved);
             *idle = IdleUntil::unknown(contact.points);
         }

@@ -15,7 +15,7 @@ use crate::contact::collider::sweep::resolve_point;
 use crate::contact::fallbacks::{Fallback, attempts_for_free_points};
 use crate::contact::ground::pass::push_by_ground;
 use crate::contact::system::ContactPass;
-use crate::math::Real;
+use crate::math::{Real, Row4};
 use crate::parallel::disjoint::DisjointSlice;
 
 /// Applies the fallbacks to the cloths that are marked as having contacts without certificate, where they are free points by
@@ -85,9 +85,10 @@ fn revert<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, points: &[u32]) 
 
 /// Ensures that the active contacts of some points include all that can touch.
 fn update_candidates_of<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, points: &[u32]) {
-    let frame_motion = travel_at(pass.contact.frame_travel[cloth], pass.span.to);
+    let [x, y, z] = travel_at(pass.contact.frame_travel[cloth], pass.span.to);
+    let frame_motion = Row4([x, y, z, R::ZERO]);
     let keeps_bound = |&point: &u32| {
-        let displacement = pass.state.displacement[point as usize].xyz();
+        let displacement = pass.state.displacement[point as usize];
         box_contains(&pass.contact.window_bounds[point as usize], displacement, frame_motion)
     };
     if !points.iter().all(keeps_bound) {

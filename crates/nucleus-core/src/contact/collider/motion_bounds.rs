@@ -1,6 +1,6 @@
 //! Motion bounds of points among colliders: a box that contains a point's displacement over a window of time steps.
 
-use crate::math::{Lanes, Real, Row4, max, scale, sub};
+use crate::math::{Lanes, Real, Row4, max, scale};
 
 /// Distance that anything may move in a candidate interval, in edge lengths.
 pub const MAX_TRAVEL: f64 = 2.0;
@@ -79,8 +79,9 @@ pub fn box_within<R: Real>(inner: &MotionBox<R>, outer: &MotionBox<R>) -> bool {
     (outer[0] - inner[0]).above_zero() | (inner[1] - outer[1]).above_zero() == 0
 }
 
-/// Whether a bound contains a displacement; `frame_motion` is the motion of the moving frame.
-pub fn box_contains<R: Real>([low, high]: &MotionBox<R>, now: [R; 3], frame_motion: [R; 3]) -> bool {
-    let now = sub(now, frame_motion);
-    (0..3).all(|axis| low.0[axis] <= now[axis] && now[axis] <= high.0[axis])
+/// Whether a bound contains a displacement; `frame_motion` is the motion of the moving frame. The fourth lanes do not count.
+#[inline(always)]
+pub fn box_contains<R: Real>(bound: &MotionBox<R>, now: Row4<R>, frame_motion: Row4<R>) -> bool {
+    let ([low, high], now) = (bound.map(Row4::lanes), now.lanes() - frame_motion.lanes());
+    ((low - now).above_zero() | (now - high).above_zero()) & 0b111 == 0
 }

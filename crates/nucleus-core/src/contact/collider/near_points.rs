@@ -249,7 +249,7 @@ impl<R: Real> NearPoints<R> {
         step: &ColliderStep<'_, R>,
     ) {
         let mut near = self.near[place];
-        if !box_contains(&near.bound, step.row(near.point).xyz(), [R::ZERO; 3]) {
+        if !box_contains(&near.bound, step.row(near.point), Row4::ZERO) {
             self.search(&mut near, collider, step);
             self.near[place] = near;
         }

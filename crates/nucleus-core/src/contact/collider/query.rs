@@ -116,17 +116,25 @@ impl<R: Real> ColliderQuery<'_, R> {
         [low - margin - from.sup(&to), high + margin - from.inf(&to)]
     }
 
-    /// Whether a group of free points touches nothing: most particles are far from a collider.
+    /// Whether a group touches nothing: most of it is far from a collider. All of its points are beyond the reach along one
+    /// axis, or each of them along any, if they are free.
     fn is_far(&self, group: &ElementGroup, [low, high]: &[Vector3<f64>; 2]) -> bool {
-        let is_outside = |&point: &u32| {
+        let boundary = &self.cloth.boundary;
+        // One bit for each side of the reach.
+        let sides = |&point: &u32| {
             let anchor = self.step.anchors[point as usize];
             let [from, to] = self.motion_bounds.of(point);
-            (0..3).any(|axis| {
-                (anchor[axis] + from.0[axis].to_f64() > high[axis])
-                    | (anchor[axis] + to.0[axis].to_f64() < low[axis])
+            (0..3).fold(0u32, |sides, axis| {
+                let above = anchor[axis] + from.0[axis].to_f64() > high[axis];
+                let below = anchor[axis] + to.0[axis].to_f64() < low[axis];
+                sides << 2 | u32::from(above) << 1 | u32::from(below)
             })
         };
-        group.triangles.is_empty() && self.cloth.boundary.points[group.points.clone()].iter().all(is_outside)
+        if group.triangles.is_empty() {
+            return boundary.points[group.points.clone()].iter().all(|point| sides(point) != 0);
+        }
+        let corners = boundary.triangles[group.triangles.clone()].iter().flatten();
+        corners.map(sides).fold(u32::MAX, |common, sides| common & sides) != 0
     }
 
     /// Finds all overlapping boxes of a group, unless it is out of `reach`.
