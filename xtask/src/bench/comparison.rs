@@ -71,7 +71,7 @@ mod tests {
     use super::*;
     use crate::bench::accuracy::Accuracy;
     use crate::bench::run::RunSpec;
-    use crate::bench::workload::Setting;
+    use crate::bench::workload::{Setting, Variant};
     use nucleus_measure::clock::Timing;
 
     const PEER: Peer = Peer {
@@ -87,7 +87,7 @@ mod tests {
 
     /// A run of `ms` milliseconds, `percent` error, and `depth` millimetres.
     fn run(ms: f64, percent: f64, depth: f64) -> RunResult {
-        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 24, tethers: false };
+        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 24, variant: Variant::Plain };
         let accuracy = Accuracy {
             strain: percent / 100.0,
             stretch: percent / 100.0,

@@ -10,7 +10,7 @@ use nucleus_core::{
 use super::mesh::{self, Cells};
 use super::report::Report;
 use super::table::{Table, figure};
-use super::workload::{DENSITY, Setting, frame};
+use super::workload::{DENSITY, Setting, Variant, frame};
 use nucleus_measure::clock::Timing;
 
 /// Points along each side of the sheet.
@@ -93,7 +93,7 @@ pub fn run(repeat: u32, report: &mut Report) -> anyhow::Result<()> {
 pub fn table(repeat: u32) -> anyhow::Result<Table> {
     let head = ["with", "rows", "passes", "ms", "more ms", "off: more rows", "more passes", "more ms"];
     let mut table = Table::new("Features and their cost", &head);
-    let mut input = frame(&Setting { resistance: 0.0, bend: 0.0, evaluations: 48, tethers: false });
+    let mut input = frame(&Setting { resistance: 0.0, bend: 0.0, evaluations: 48, variant: Variant::Plain });
     input.cloths[0] = ClothFrame { compression_resistance: 0.0, ..input.cloths[0] };
     let mut lists = ClothLists::NONE;
     let mut before = measure(lists, &input, repeat)?;

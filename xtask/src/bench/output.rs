@@ -66,7 +66,7 @@ pub fn write_csv(path: &Path, runs: &[RunResult]) -> anyhow::Result<()> {
 
 fn csv_text(runs: &[RunResult]) -> String {
     let mut text =
-        String::from("workload,points,threads,frames,resistance,bend,evaluations,tethers,processor,wall");
+        String::from("workload,points,threads,frames,resistance,bend,evaluations,variant,processor,wall");
     STAGES.iter().for_each(|(_, name)| text.extend([",", name]));
     text.push_str(
         ",link_evaluations,searches,pairs_unresolved,build,strain,stretch,max,sag,energy,depth,worst_depth,lower_edge,hash\n",
@@ -75,7 +75,7 @@ fn csv_text(runs: &[RunResult]) -> String {
         let (spec, setting, found) = (run.spec, run.spec.setting, run.accuracy);
         let named = format!("{},{},{},{}", spec.workload, spec.size, spec.threads, spec.frames);
         let set =
-            format!("{},{},{},{}", setting.resistance, setting.bend, setting.evaluations, setting.tethers);
+            format!("{},{},{},{}", setting.resistance, setting.bend, setting.evaluations, setting.variant);
         let times = [1e3 * run.timing.processor, 1e3 * run.timing.wall];
         let stages = run.shares.map(|share| run.ms() * share);
         let errors = [
@@ -106,7 +106,7 @@ fn csv_text(runs: &[RunResult]) -> String {
 mod tests {
     use super::*;
     use crate::bench::run::RunSpec;
-    use crate::bench::workload::{Setting, Workload};
+    use crate::bench::workload::{Setting, Variant, Workload};
 
     #[test]
     fn figures_are_replaced_and_the_rest_of_the_page_is_unchanged() {
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn every_line_has_as_many_values_as_the_head() {
-        let setting = Setting { resistance: 20.0, bend: 0.1, evaluations: 3, tethers: false };
+        let setting = Setting { resistance: 20.0, bend: 0.1, evaluations: 3, variant: Variant::Plain };
         let spec = RunSpec { workload: Workload::Drape, size: 5, setting, threads: 1, frames: 1 };
         let text = csv_text(&[spec.run(1).unwrap()]);
         let values: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();

@@ -171,9 +171,10 @@ fn median_frame(frames: &[Timing]) -> Timing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::workload::Variant;
 
     fn small(workload: Workload, threads: u32) -> RunResult {
-        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 6, tethers: false };
+        let setting = Setting { resistance: 20.0, bend: 0.0, evaluations: 6, variant: Variant::Plain };
         RunSpec { workload, size: 9, setting, threads, frames: 4 }.run(2).unwrap()
     }
 

@@ -3,11 +3,11 @@
 use super::report::Report;
 use super::run::{RunResult, RunSpec, median, same_bits};
 use super::table::{Table, figure};
-use super::workload::{DENSITY, GRAVITY, Setting, Workload};
+use super::workload::{DENSITY, GRAVITY, Setting, Variant, Workload};
 
 /// A cloth of 10 kN/m.
 const fn cloth(evaluations: u32) -> Setting {
-    Setting { resistance: 20.0, bend: 0.0, evaluations, tethers: false }
+    Setting { resistance: 20.0, bend: 0.0, evaluations, variant: Variant::Plain }
 }
 
 /// Its stiffness in N/m.

@@ -5,7 +5,7 @@ use super::peers::{PEERS, SOURCE};
 use super::report::Report;
 use super::run::{RunResult, RunSpec};
 use super::table::{Table, figure};
-use super::workload::{Setting, Workload};
+use super::workload::{Setting, Variant, Workload};
 use nucleus_measure::clock::STAGES;
 
 /// Evaluations of the table by stage.
@@ -19,7 +19,7 @@ pub fn run(workload: Workload, sizes: &[u32], repeat: u32, report: &mut Report) 
     let (tethered, plain): (Vec<_>, Vec<_>) = sizes
         .iter()
         .flat_map(|&size| settings(workload, size).into_iter().map(move |setting| (size, setting)))
-        .partition(|(_, setting)| setting.tethers);
+        .partition(|(_, setting)| setting.variant == Variant::Tethers);
     let mut runs = Vec::new();
     for &(size, setting) in plain.iter().chain(&tethered) {
         let run = RunSpec::full(workload, size, setting).run(repeat)?;
@@ -57,16 +57,17 @@ fn settings(workload: Workload, size: u32) -> Vec<Setting> {
         Workload::Drape => &[(20.0, 0.0), (20.0, 0.1)],
     };
     let each = |&(resistance, bend): &(f64, f64)| {
-        evaluations.iter().map(move |&evaluations| Setting { resistance, bend, evaluations, tethers: false })
+        let setting = move |&evaluations| Setting { resistance, bend, evaluations, variant: Variant::Plain };
+        evaluations.iter().map(setting)
     };
-    let tethered: &[u32] = if workload == Workload::Swing { &[24, 48, 96, 192, 288, 384] } else { &[] };
-    let tethered = tethered.iter().map(|&evaluations| Setting {
-        resistance: 20.0,
-        bend: 0.0,
-        evaluations,
-        tethers: true,
-    });
-    variants.iter().flat_map(each).filter(is_worth_it).chain(tethered).collect()
+    let (variant, of_variant): (_, &[u32]) = match workload {
+        Workload::Swing => (Variant::Tethers, &[24, 48, 96, 192, 288, 384]),
+        Workload::Drape => (Variant::Points, &[24, 48, 96, 192]),
+        Workload::Hang => (Variant::Plain, &[]),
+    };
+    let of_variant =
+        of_variant.iter().map(|&evaluations| Setting { resistance: 20.0, bend: 0.0, evaluations, variant });
+    variants.iter().flat_map(each).filter(is_worth_it).chain(of_variant).collect()
 }
 
 /// Stiff cloth needs many evaluations to converge; soft cloth has physical strain that more of them do not reduce. Bending

@@ -4,8 +4,8 @@ use std::fmt;
 
 use nalgebra::Vector3;
 use nucleus_core::{
-    BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, FrameInput, GroundPlane,
-    Mass, ModelBuilder, Pin, PointId, Stiffness, Surface,
+    BuildError, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, Elements, FrameInput,
+    GroundPlane, Mass, ModelBuilder, Pin, PointId, Stiffness, Surface,
 };
 
 use nucleus_measure::fixture;
@@ -53,8 +53,19 @@ pub struct Setting {
     pub bend: f64,
     /// Evaluations per 1/24 s, over 3 substeps.
     pub evaluations: u32,
+    /// What else it has.
+    pub variant: Variant,
+}
+
+/// Variants of a workload.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variant {
+    /// Edges and faces of the cloth collide.
+    Plain,
     /// Tethers to the pins.
-    pub tethers: bool,
+    Tethers,
+    /// Points of the cloth collide alone (`collisionFlag` vertex), as those of most peers do.
+    Points,
 }
 
 impl fmt::Display for Setting {
@@ -63,7 +74,17 @@ impl fmt::Display for Setting {
         if self.bend > 0.0 {
             write!(f, ", bend {}", self.bend)?;
         }
-        if self.tethers { f.write_str(", tethers") } else { Ok(()) }
+        if self.variant == Variant::Plain { Ok(()) } else { write!(f, ", {}", self.variant) }
+    }
+}
+
+impl fmt::Display for Variant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Plain => "plain",
+            Self::Tethers => "tethers",
+            Self::Points => "points alone",
+        })
     }
 }
 
@@ -103,7 +124,7 @@ impl Workload {
             stretch: true,
             bend: setting.bend > 0.0,
             damp: self == Self::Drape,
-            tethers: setting.tethers,
+            tethers: setting.variant == Variant::Tethers,
             ..ClothLists::NONE
         };
         builder.cloth(Cloth::new(sheet.clone(), Mass::PerArea(DENSITY), lists))?;
@@ -141,7 +162,10 @@ pub fn frame(setting: &Setting) -> FrameInput {
     cloth.stiffness = Stiffness::default();
     (cloth.stretch_resistance, cloth.compression_resistance) = (setting.resistance, setting.resistance);
     cloth.bend_resistance = setting.bend;
-    cloth.tethers = setting.tethers.then_some(1.0);
+    cloth.tethers = (setting.variant == Variant::Tethers).then_some(1.0);
+    if setting.variant == Variant::Points {
+        cloth.elements = Elements::Points;
+    }
     frame
 }
 

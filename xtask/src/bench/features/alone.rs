@@ -8,7 +8,7 @@ use nucleus_core::{
 
 use super::super::mesh::{self, Cells};
 use super::super::table::{Table, figure};
-use super::super::workload::{DENSITY, Setting, frame};
+use super::super::workload::{DENSITY, Setting, Variant, frame};
 use nucleus_measure::clock::Timing;
 
 /// Points along each side of the sheet.
@@ -110,7 +110,8 @@ impl Sheet {
         let surface = mesh::sheet(SIZE, Cells::Quads, Vector3::zeros(), Vector3::x(), Vector3::z());
         let lists =
             ClothLists { stretch: true, cross_links: true, bend: true, damp: true, ..ClothLists::NONE };
-        let mut input = frame(&Setting { resistance: 20.0, bend: 0.1, evaluations: 48, tethers: false });
+        let mut input =
+            frame(&Setting { resistance: 20.0, bend: 0.1, evaluations: 48, variant: Variant::Plain });
         input.cloths[0] = ClothFrame { stretch_damp: 0.1, collide: false, ..input.cloths[0] };
         Self {
             cloth: Cloth::new(surface, Mass::PerArea(DENSITY), lists),
