@@ -16,19 +16,19 @@ const TYPICAL: u32 = 48;
 /// # Errors
 /// When the solver rejects a scene, or repeated runs differ.
 pub fn run(workload: Workload, sizes: &[u32], repeat: u32, report: &mut Report) -> anyhow::Result<()> {
-    let (tethered, plain): (Vec<_>, Vec<_>) = sizes
+    let (varied, plain): (Vec<_>, Vec<_>) = sizes
         .iter()
         .flat_map(|&size| settings(workload, size).into_iter().map(move |setting| (size, setting)))
-        .partition(|(_, setting)| setting.variant == Variant::Tethers);
+        .partition(|(_, setting)| setting.variant != Variant::Plain);
     let mut runs = Vec::new();
-    for &(size, setting) in plain.iter().chain(&tethered) {
+    for &(size, setting) in plain.iter().chain(&varied) {
         let run = RunSpec::full(workload, size, setting).run(repeat)?;
         report.keep(&run);
         runs.push(run);
     }
     report.show(own_table(workload, &runs));
     report.show(stage_table(workload, &runs));
-    // The peers ran without tethers.
+    // The peers ran without tethers, and not of each is it known which elements collide.
     let comparable = &runs[..plain.len()];
     let comparisons: Vec<Comparison> = PEERS
         .iter()

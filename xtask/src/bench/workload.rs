@@ -53,7 +53,7 @@ pub struct Setting {
     pub bend: f64,
     /// Evaluations per 1/24 s, over 3 substeps.
     pub evaluations: u32,
-    /// What else it has.
+    /// Its variant.
     pub variant: Variant,
 }
 
@@ -64,7 +64,7 @@ pub enum Variant {
     Plain,
     /// Tethers to the pins.
     Tethers,
-    /// Points of the cloth collide alone (`collisionFlag` vertex), as those of most peers do.
+    /// Points of the cloth collide alone (`collisionFlag` vertex).
     Points,
 }
 
