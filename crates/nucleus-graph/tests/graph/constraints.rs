@@ -322,7 +322,8 @@ fn points_beside_an_edge_or_a_corner_of_a_surface_are_held_along_it_as_points_ab
         );
         let program = program(&of_nodes(&nodes, ""));
         let [start] = places(&program, 0, "q")[..] else { panic!("one point") };
-        // Springs of 500 N/m for a strength of 1, halved by either component, hold one kilogram: let go, it sinks to twice its sag.
+        // A strength of 10 is 5000 N/m, and each component halves it. A mass of 1 kg that is released sinks to twice its static
+        // deflection.
         let most = 2.0 * 9.8 / 1250.0;
         for frames in [4, 8, 16, 24] {
             let [x, y, z] = places(&program, frames, "q")[0];
