@@ -81,8 +81,10 @@ impl ShadowMap {
     /// The fraction of this light that reaches a point, 0 to 1, filtered over `radius` cells to each side.
     pub fn visibility(&self, position: &Vec3, normal: &Vec3, radius: i32) -> f32 {
         let cell = 2.0 * self.half_extent / self.side as f32;
-        // An offset along the normal keeps a surface from shading itself; a larger filter needs a larger one.
-        let lift = cell * (0.75 + 0.5 * radius as f32);
+        // An offset along the normal keeps a surface from shading itself. On a slope the cells at the rim of the filter are
+        // higher than the point, by `radius + 1` cells at most along both axes.
+        let slope = normal.dot(&self.right).abs() + normal.dot(&self.up).abs();
+        let lift = cell * (0.75 + 0.5 * radius as f32).max((radius + 1) as f32 * slope);
         let at = self.at(&(position + normal * lift));
         let (column, row) = (at.x - 0.5, at.y - 0.5);
         let near = -(radius as f32) - 2.0..self.side as f32 + radius as f32 + 1.0;
@@ -206,6 +208,26 @@ mod tests {
             let (z, x) = angle.sin_cos();
             assert_eq!(visibility(0.9 * x, 0.9 * z), 0.0, "{angle}");
             assert_eq!(visibility(1.1 * x, 1.1 * z), 1.0, "{angle}");
+        }
+    }
+
+    #[test]
+    fn a_large_plane_does_not_shade_itself_at_any_slope() {
+        for degrees in [0.0f32, 20.0, 40.0, 60.0, 75.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let (across, normal) = (Vec3::new(cos, sin, 0.0), Vec3::new(-sin, cos, 0.0));
+            let corner = |[x, z]: [f32; 2]| (across * x + Vec3::z() * z).into();
+            let positions = [[-400.0, -500.0], [600.0, -500.0], [600.0, 500.0], [-400.0, 500.0]].map(corner);
+            let faces = nucleus_core::Faces::from_iter([&[0u32, 3, 2, 1][..]]);
+            let map = map_of(Kind::Collider, &faces, &positions);
+            for radius in [1, 2] {
+                for k in 0..2000 {
+                    let place =
+                        across * (0.0007 * k as f32 - 0.7) * cos + Vec3::z() * (0.31 * k as f32).sin();
+                    let visible = map.visibility(&place, &normal, radius);
+                    assert!(visible > 0.999, "{degrees} degrees, radius {radius}, {place}: {visible}");
+                }
+            }
         }
     }
 
