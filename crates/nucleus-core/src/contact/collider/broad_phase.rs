@@ -12,13 +12,13 @@ use nalgebra::Vector3;
 
 use crate::contact::collider::frame_start::{find_approaching_colliders, near_colliders};
 use crate::contact::collider::motion_bounds::{
-    MAX_TRAVEL, MotionBounds, box_contains, box_growth, box_within, predict_box, travel_at,
+    MAX_TRAVEL, MotionBounds, box_contains, box_growth, box_within, predict_box, travel_row,
 };
 use crate::contact::collider::query::ColliderQuery;
 use crate::contact::material::MIN_THICKNESS;
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ColliderStepArgs;
-use crate::math::{Real, Row4, dot};
+use crate::math::{Real, dot};
 use crate::model::Model;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::schedule::{StepInterval, TimeInterval};
@@ -222,10 +222,8 @@ fn predict_bounds<R: Real>(
             ContactSystem { window_bounds, bound_growth, interval_bounds, frame_travel, bounds_violated, .. },
         ..
     } = pass;
-    let [frame_at_start, frame_now] = pass.span.times().ends().map(|time| {
-        let [x, y, z] = travel_at(frame_travel[cloth], time);
-        Row4([x, y, z, R::ZERO])
-    });
+    let [frame_at_start, frame_now] =
+        pass.span.times().ends().map(|time| travel_row(frame_travel[cloth], time));
     let thickness = pass.frame.cloths[cloth].thickness.max(MIN_THICKNESS);
     let most = R::from_f64(cloths[cloth].edge_length);
     let horizon = |time: TimeInterval, margin_share: f64| {
@@ -267,8 +265,7 @@ fn predict_bounds<R: Real>(
 
 /// Whether a point of the cloth violates its window bound at a time of the frame.
 fn has_violations<R: Real>(pass: &ContactPass<'_, R>, cloth: usize) -> bool {
-    let [x, y, z] = travel_at(pass.contact.frame_travel[cloth], pass.span.to);
-    let frame_motion = Row4([x, y, z, R::ZERO]);
+    let frame_motion = travel_row(pass.contact.frame_travel[cloth], pass.span.to);
     let keeps_bound = |row: u32| {
         let (bound, now) = (&pass.contact.window_bounds[row as usize], pass.state.displacement[row as usize]);
         box_contains(bound, now, frame_motion)

@@ -10,12 +10,12 @@ use crate::contact::collider::broad_phase::update_collider_candidates;
 use crate::contact::collider::contact::{Certificate, Outcome};
 use crate::contact::collider::contacts::ColliderContacts;
 use crate::contact::collider::lists::for_contacts_of;
-use crate::contact::collider::motion_bounds::{box_contains, travel_at};
+use crate::contact::collider::motion_bounds::{box_contains, travel_row};
 use crate::contact::collider::sweep::resolve_point;
 use crate::contact::fallbacks::{Fallback, attempts_for_free_points};
 use crate::contact::ground::pass::push_by_ground;
 use crate::contact::system::ContactPass;
-use crate::math::{Real, Row4};
+use crate::math::Real;
 use crate::parallel::disjoint::DisjointSlice;
 
 /// Applies the fallbacks to the cloths that are marked as having contacts without certificate, where they are free points by
@@ -85,8 +85,7 @@ fn revert<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, points: &[u32]) 
 
 /// Ensures that the active contacts of some points include all that can touch.
 fn update_candidates_of<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usize, points: &[u32]) {
-    let [x, y, z] = travel_at(pass.contact.frame_travel[cloth], pass.span.to);
-    let frame_motion = Row4([x, y, z, R::ZERO]);
+    let frame_motion = travel_row(pass.contact.frame_travel[cloth], pass.span.to);
     let keeps_bound = |&point: &u32| {
         let displacement = pass.state.displacement[point as usize];
         box_contains(&pass.contact.window_bounds[point as usize], displacement, frame_motion)

@@ -39,6 +39,13 @@ pub fn travel_at<R: Real>(drift: [R; 3], time: f64) -> [R; 3] {
     scale(drift, R::from_f64(time))
 }
 
+/// The same as the row of a displacement.
+#[inline(always)]
+pub fn travel_row<R: Real>(drift: [R; 3], time: f64) -> Row4<R> {
+    let [x, y, z] = travel_at(drift, time);
+    Row4([x, y, z, R::ZERO])
+}
+
 /// Margin of a bound on all sides, as a share of the point's predicted motion.
 const TRAVEL_MARGIN: f64 = 0.25;
 
