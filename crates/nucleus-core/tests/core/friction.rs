@@ -130,15 +130,16 @@ fn a_slope_has_coulombs_friction_in_single_precision_whatever_the_size_of_its_fa
     }
 }
 
-/// The smallest and the largest distance of a sheet from a plate of one quad, over its thickness, while the plate turns.
-fn distances_from_turning_plate(size: f64) -> [f64; 2] {
+/// The smallest and the largest distance of a sheet from a plate of one quad, over its thickness, while the plate turns. The
+/// sheet starts on its upper side (1) or its lower side (-1).
+fn distances_from_turning_plate(size: f64, side: f64, stickiness: f64) -> [f64; 2] {
     let plate = grid(2, 2, Vec3::x() * size, Vec3::z() * size);
     let mut sheet = grid(3, 3, Vec3::x() * 0.4, Vec3::z() * 0.4);
-    sheet.positions.iter_mut().for_each(|place| *place += Vec3::new(0.3, THICKNESS, 0.1));
+    sheet.positions.iter_mut().for_each(|place| *place += Vec3::new(0.3, side * THICKNESS, 0.1));
     let cloth = thrown(sheet, LINKS, Vec3::zeros());
     let mut solver = Solver::<f64>::new(built(cloth, [plate.clone()]), 2);
     let turned = |k: u32| Rotation3::from_axis_angle(&Vec3::z_axis(), 0.1 * f64::from(k) / 24.0);
-    let settings = ClothFrame { thickness: THICKNESS, friction: 1.0, ..still() };
+    let settings = ClothFrame { thickness: THICKNESS, friction: 1.0, stickiness, ..still() };
     let mut range = [f64::MAX, 0.0f64];
     for k in 1..=24 {
         let at = |k| plate.positions.iter().map(|place| turned(k) * place).collect::<Vec<_>>();
@@ -148,7 +149,7 @@ fn distances_from_turning_plate(size: f64) -> [f64; 2] {
             FrameInput { cloths: vec![settings], colliders: vec![moving], ..frame(3, physical(96.0)) };
         solver.step(&input, &mut ());
         for point in 0..9 {
-            let distance = (turned(k).inverse() * solver.point(FIRST, point)).y / THICKNESS;
+            let distance = (turned(k).inverse() * solver.point(FIRST, point)).y * side / THICKNESS;
             range = [range[0].min(distance), range[1].max(distance)];
         }
     }
@@ -158,7 +159,15 @@ fn distances_from_turning_plate(size: f64) -> [f64; 2] {
 #[test]
 fn a_sheet_on_a_turning_plate_keeps_its_thickness_whatever_the_size_of_the_faces() {
     for size in [2.0, 20.0, 60.0] {
-        let [least, most] = distances_from_turning_plate(size);
+        let [least, most] = distances_from_turning_plate(size, 1.0, 0.0);
+        assert!(least > 0.999 && most < 1.001, "{size} m: {least} to {most} thicknesses");
+    }
+}
+
+#[test]
+fn adhesion_holds_a_sheet_under_a_turning_plate_whatever_the_size_of_the_faces() {
+    for size in [2.0, 20.0, 60.0] {
+        let [least, most] = distances_from_turning_plate(size, -1.0, 1.0);
         assert!(least > 0.999 && most < 1.001, "{size} m: {least} to {most} thicknesses");
     }
 }

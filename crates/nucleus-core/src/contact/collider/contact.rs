@@ -270,10 +270,29 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         self.excess[0] + (self.excess[1] - self.excess[0]) * share
     }
 
-    /// The gap at the start of the step.
+    /// The gap at the contact, at a share of the candidate interval: from the contact on the collider, not from the plane.
+    #[inline(always)]
+    pub(super) fn gap_at(&self, displacement: [[R; 3]; N], share: R) -> R {
+        self.gaps(displacement, share).0 + self.excess_at(share)
+    }
+
+    /// The gap at the contact at the start of the step.
     #[inline(always)]
     pub(super) fn gap_at_start(&self, step: &ColliderStep<'_, R>) -> R {
-        self.gaps(step.start_displacements(self.points), step.shares[0]).0
+        self.gap_at(step.start_displacements(self.points), step.shares[0])
+    }
+
+    /// The gap at the contact at the end of the step.
+    #[inline(always)]
+    pub fn gap(&self, step: &ColliderStep<'_, R>) -> R {
+        self.gap_at(step.displacements(self.points), step.shares[1])
+    }
+
+    /// The gaps above the plane at the start and at the end of the step. Those of a point are no larger than its distance.
+    #[inline(always)]
+    pub(super) fn gaps_above_plane(&self, step: &ColliderStep<'_, R>) -> [R; 2] {
+        let [start, end] = [step.start_displacements(self.points), step.displacements(self.points)];
+        [self.gaps(start, step.shares[0]).0, self.gaps(end, step.shares[1]).0]
     }
 
     /// Depenetration by colliders at the contact in this step, in metres.
@@ -391,6 +410,7 @@ impl<R: Real> ColliderContact<R, 1, 3> {
         };
         contact.set_plane(normal, ([1.0], weights.unwrap_or([1.0 / 3.0; 3])), step);
         if weights.is_none() {
+            contact.excess = [R::ZERO; 2]; // No contact is known that it could be above.
             contact.plane_origin = [R::from_f64(NOWHERE); 3];
         }
         contact

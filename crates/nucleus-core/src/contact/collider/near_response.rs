@@ -144,7 +144,7 @@ impl<R: Real> NearPoints<R> {
     pub fn measure(&mut self, at: usize, step: &ColliderStep<'_, R>) {
         let ratios = self.places(at, None).flat_map(|place| self.contacts_of(place)).map(|contact| {
             // The gap along the plane is no larger than the distance.
-            let along = contact.gap(step).to_f64() / step.material.thickness;
+            let along = contact.gaps_above_plane(step)[1].to_f64() / step.material.thickness;
             if along < 1.0 { contact.gap_ratio(step) } else { along }
         });
         self.min_gap = ratios.fold(self.min_gap, f64::min);

@@ -64,7 +64,8 @@ fn find_obstacles<R: Real>(
             let [point] = contact.points;
             let is_inside = obstacles[..exits].binary_search_by_key(&point, |exit| exit.point).is_ok();
             if is_inside && !list.depenetration.contains(point) {
-                let clearance = (contact.gap(&step) - contact.rest_gap(&step, [R::ONE])).to_f64();
+                let clearance =
+                    (contact.gaps_above_plane(&step)[1] - contact.rest_gap(&step, [R::ONE])).to_f64();
                 let normal = Vector3::from(contact.normal.map(R::to_f64));
                 obstacles.push(Obstacle { point, collider: Some(list.collider), normal, clearance });
             }

@@ -34,7 +34,8 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
     pub fn resolve(&mut self, step: &ColliderStep<'_, R>) -> Outcome {
         let moved = step.displacements(self.points);
         let touching = R::from_f64(1.0 - TOUCH_TOLERANCE);
-        let (gap, least) = self.gaps(moved, step.shares[1]);
+        let (above_plane, least) = self.gaps(moved, step.shares[1]);
+        let gap = above_plane + self.excess_at(step.shares[1]);
         if least >= step.pushing_gap() {
             return self.leave(step, gap);
         }
@@ -42,12 +43,10 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             return self.resolve_exact(step, least);
         }
         let rest_gap = self.rest_gap(step, self.weights);
-        let gap = gap + self.excess_at(step.shares[1]);
         if gap >= rest_gap * touching {
             return self.leave(step, gap);
         }
-        let before = self.gap_at_start(step) + self.excess_at(step.shares[0]);
-        self.push(step, rest_gap, [before, gap]);
+        self.push(step, rest_gap, [self.gap_at_start(step), gap]);
         Outcome::Pushed
     }
 
@@ -89,8 +88,10 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
             if passes {
                 self.set_plane(normal, at_start, step);
                 let rest_gap = R::from_f64(thickness);
-                let (gaps, depenetration) =
-                    ([self.gap_at_start(step), R::from_f64(gap)], dot(self.normal, self.depenetration(step)));
+                // Both gaps are those above the plane, which the element has to clear.
+                let [at_start, _] = self.gaps_above_plane(step);
+                let gaps = [at_start, R::from_f64(gap)];
+                let depenetration = dot(self.normal, self.depenetration(step));
                 self.push_rigidly(step, Push::new(rest_gap, gaps, depenetration, step.h));
                 return Outcome::Reverted;
             }
@@ -199,11 +200,6 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
 }
 
 impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
-    /// The gap at the end of the step.
-    pub fn gap(&self, step: &ColliderStep<'_, R>) -> R {
-        self.gaps(step.displacements(self.points), step.shares[1]).0
-    }
-
     /// Applies adhesion between the cloth's element and the surface.
     pub fn adhere(&self, step: &ColliderStep<'_, R>) {
         let (weights, mut mapped) = (&(self.weights, []), None);
@@ -216,7 +212,7 @@ impl<R: Real, const N: usize, const M: usize> ColliderContact<R, N, M> {
         };
         let rows = self.points.map(|point| step.row(point));
         let start = step.start_displacements(self.points);
-        let (gap, _) = self.gaps(start, step.shares[0]);
+        let gap = self.gap_at(start, step.shares[0]);
         let (before, elapsed) = (self.normal.map(|n| n * gap), R::from_f64(step.time.length()));
         let [from, to] =
             [self.contact_displacement(start), self.contact_displacement(rows.map(|row| row.xyz()))];
@@ -257,9 +253,8 @@ impl<R: Real> ColliderContact<R, 1, 3> {
     ///
     /// The plane of the contact only tells that they may touch: it may be from a time at which the point was beside the face.
     pub fn touch(&self, step: &ColliderStep<'_, R>, frame: f64) -> Option<TouchingPoint<R>> {
-        let (along, _) = self.gaps(step.displacements(self.points), step.shares[1]);
         let rest_gap = self.rest_gap(step, self.weights);
-        if !Restitution::touches(along, rest_gap) {
+        if !Restitution::touches(self.gaps_above_plane(step)[1], rest_gap) {
             return None;
         }
         let place: [f64; 3] = step.end_position(self.points[0]).into();

@@ -98,7 +98,7 @@ pub fn release_cleared_points<R: Real>(pass: &mut ContactPass<'_, R>, cloth: usi
         range = if range < thickness { thickness } else { range };
         for contact in list.active.points.indices.iter().map(|&at| &list.point_face[at as usize]) {
             let lowest = &mut kept.lowest[contact.points[0] as usize];
-            *lowest = least(*lowest, contact.gap_at_start(&step));
+            *lowest = least(*lowest, contact.gaps_above_plane(&step)[0]);
         }
     }
     for (gap, lowest) in kept.gaps[own.clone()].iter_mut().zip(&kept.lowest[own]) {
