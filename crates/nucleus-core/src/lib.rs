@@ -102,7 +102,7 @@ pub use input::frame::{
     SelfCollision, Stiffness,
 };
 pub use input::links::{
-    ConstraintFrame, ExcludedSide, Exclusion, Falloff, Fold, Link, LinkForce, LinkMethod, LinkSide,
+    ConstraintFrame, ExcludedSide, Exclusion, Falloff, Fold, Link, LinkForce, LinkKind, LinkMethod, LinkSide,
     MAX_EXCLUSIONS,
 };
 pub use input::object_fields::{PointField, WindField};

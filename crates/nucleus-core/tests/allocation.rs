@@ -9,8 +9,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nucleus_core::{
-    Cloth, ClothFrame, ClothLists, ColliderId, ConstraintFrame, Elements, FrameInput, Link, LinkSide, Mass,
-    ModelBuilder, PointId, Pressure, SelfCollision, Solver, StateView, StepObserver, SubstepIndex,
+    Cloth, ClothFrame, ClothLists, ColliderId, ConstraintFrame, Elements, FrameInput, Link, LinkKind,
+    LinkSide, Mass, ModelBuilder, PointId, Pressure, SelfCollision, Solver, StateView, StepObserver,
+    SubstepIndex,
 };
 use scenes::links::point;
 
@@ -71,7 +72,7 @@ fn tied_drape() -> (ModelBuilder, FrameInput) {
         points: [0, 1, 2].map(PointId),
         weights: [1.0, 0.0, 0.0],
     };
-    let slides = |at: u32| Link { on_surface: true, ..Link::new([point(0, at), foot], 0.05) };
+    let slides = |at: u32| Link { kind: LinkKind::Surface, ..Link::new([point(0, at), foot], 0.05) };
     let sliding = ConstraintFrame {
         formed: Some([544, 545, 546].map(slides).to_vec()),
         slides: true,

@@ -58,17 +58,13 @@ impl LinkSide {
 /// A link. Formed by the caller, kept by the solver until its constraint is formed anew.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
-    /// What is joined. With `on_surface` the second side is a face.
+    /// What is joined. On a surface the second side is a face.
     pub sides: [LinkSide; 2],
+    /// What it holds.
+    pub kind: LinkKind,
     /// Distance to hold in metres, before [`ConstraintFrame::rest_scale`]; on a surface along its normal, or its direction where
     /// it is oblique, with sign.
     pub rest: f64,
-    /// Strength is split: one along the normal of the face on the second side, another along the face.
-    pub on_surface: bool,
-    /// Of a link on a surface that starts beside its face and does not slide: its unit direction turns with the face and takes the
-    /// place of the normal. These are its components in the plane of the face, along the first edge and across it; the third is
-    /// not negative.
-    pub oblique: Option<[f64; 2]>,
     /// Factor on the strength, 0 to 1 (product of both components').
     pub strength: f64,
     /// Factor on the tangent strength.
@@ -79,8 +75,21 @@ pub struct Link {
     pub weight: [f64; 2],
     /// Length of the edge that it stands for in metres, or 1 for single points: the load that breaks it is per length.
     pub length: f64,
-    /// Whether it resists folding instead of holding a distance.
-    pub fold: Option<Fold>,
+}
+
+/// What a link holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LinkKind {
+    /// The distance between its sides.
+    Distance,
+    /// A place on a surface. Strength is split: one along the normal of the face on the second side, another along the face.
+    Surface,
+    /// A place on a surface for a link that starts beside its face and does not slide: its unit direction turns with the face and
+    /// takes the place of the normal. These are its components in the plane of the face, along the first edge and across it; the
+    /// third is not negative.
+    Oblique([f64; 2]),
+    /// The angle between two faces.
+    Fold(Fold),
 }
 
 /// A link that resists folding: its sides are the two faces at joined edges, their weights those of a hinge, and its rest
@@ -106,16 +115,29 @@ impl Link {
     pub fn new(sides: [LinkSide; 2], rest: f64) -> Self {
         Self {
             sides,
+            kind: LinkKind::Distance,
             rest,
-            on_surface: false,
-            oblique: None,
             strength: 1.0,
             tangent_strength: 1.0,
             glue: 1.0,
             weight: [1.0; 2],
             length: 1.0,
-            fold: None,
         }
+    }
+
+    /// Whether its second side is a face with a normal that it keeps to.
+    pub fn is_on_surface(&self) -> bool {
+        matches!(self.kind, LinkKind::Surface | LinkKind::Oblique(_))
+    }
+
+    /// The direction of an oblique link.
+    pub fn oblique(&self) -> Option<[f64; 2]> {
+        if let LinkKind::Oblique(direction) = self.kind { Some(direction) } else { None }
+    }
+
+    /// The fold that it resists, if it does.
+    pub fn fold(&self) -> Option<Fold> {
+        if let LinkKind::Fold(fold) = self.kind { Some(fold) } else { None }
     }
 
     /// The frame in which the direction of an oblique link is given: along the first edge of a face, across it and along the
@@ -324,39 +346,49 @@ impl Encode for LinkSide {
 
 /// Sides, rest length and surface, and its direction; strengths; weights, length, and the fold. A direction of more than
 /// length one and a fold of negative length are none.
-type PackedLink = (([LinkSide; 2], (f64, (bool, [f64; 2]))), ([f64; 3], ([f64; 3], (f64, [u32; 2]))));
+type PackedLink = (([LinkSide; 2], (f64, PackedSurface)), ([f64; 3], ([f64; 3], PackedFold)));
+type PackedSurface = (bool, [f64; 2]);
+type PackedFold = (f64, [u32; 2]);
 
 /// What is stored where a link is not oblique.
 const NOT_OBLIQUE: [f64; 2] = [2.0; 2];
+/// What is stored where a link is not a fold.
+const NO_FOLD: PackedFold = (-1.0, [0; 2]);
+
+impl LinkKind {
+    fn packed(self) -> (PackedSurface, PackedFold) {
+        match self {
+            Self::Distance => ((false, NOT_OBLIQUE), NO_FOLD),
+            Self::Surface => ((true, NOT_OBLIQUE), NO_FOLD),
+            Self::Oblique(direction) => ((true, direction), NO_FOLD),
+            Self::Fold(Fold { max_length, holds }) => ((false, NOT_OBLIQUE), (max_length, holds)),
+        }
+    }
+
+    fn unpacked((on_surface, direction): PackedSurface, (max_length, holds): PackedFold) -> Option<Self> {
+        match (on_surface, direction != NOT_OBLIQUE, max_length >= 0.0) {
+            (false, false, false) => Some(Self::Distance),
+            (true, false, false) => Some(Self::Surface),
+            (true, true, false) => Some(Self::Oblique(direction)),
+            (false, false, true) => Some(Self::Fold(Fold { max_length, holds })),
+            _ => None,
+        }
+    }
+}
 
 impl Encode for Link {
     const SIZE: usize = <PackedLink as Encode>::SIZE;
     fn encode(&self, out: &mut Vec<u8>) {
-        let Self { sides, rest, on_surface, oblique, strength, tangent_strength, glue, weight, length, fold } =
-            *self;
-        let fold = fold.map_or((-1.0, [0; 2]), |Fold { max_length, holds }| (max_length, holds));
-        let numbers = ([strength, tangent_strength, glue], ([weight[0], weight[1], length], fold));
-        let direction = oblique.unwrap_or(NOT_OBLIQUE);
-        let packed: PackedLink = ((sides, (rest, (on_surface, direction))), numbers);
+        let Self { sides, kind, rest, strength, tangent_strength, glue, weight: [a, b], length } = *self;
+        let (surface, fold) = kind.packed();
+        let numbers = ([strength, tangent_strength, glue], ([a, b, length], fold));
+        let packed: PackedLink = ((sides, (rest, surface)), numbers);
         packed.encode(out);
     }
     fn decode(from: &mut Reader<'_>) -> Option<Self> {
-        let ((sides, (rest, (on_surface, direction))), numbers) = PackedLink::decode(from)?;
-        let ([strength, tangent_strength, glue], ([a, b, length], (max_length, holds))) = numbers;
-        let fold = (max_length >= 0.0).then_some(Fold { max_length, holds });
-        let weight = [a, b];
-        let oblique = (direction != NOT_OBLIQUE).then_some(direction);
-        Some(Self {
-            sides,
-            rest,
-            on_surface,
-            oblique,
-            strength,
-            tangent_strength,
-            glue,
-            weight,
-            length,
-            fold,
-        })
+        let ((sides, (rest, surface)), numbers) = PackedLink::decode(from)?;
+        let ([strength, tangent_strength, glue], ([a, b, length], fold)) = numbers;
+        let kind = LinkKind::unpacked(surface, fold)?;
+        Some(Self { sides, kind, rest, strength, tangent_strength, glue, weight: [a, b], length })
     }
 }

@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use crate::scenes::{Vec3, frame, grid, ground, physical, sphere, still};
 use nucleus_core::{
-    Cloth, ClothId, ClothLists, Collider, ConstraintFrame, FrameInput, Link, LinkSide, Mass, ModelBuilder,
-    PointId, RestoreError, SelfCollision, Solver, Surface, add_checksum, verify_checksum,
+    Cloth, ClothId, ClothLists, Collider, ConstraintFrame, FrameInput, Link, LinkKind, LinkSide, Mass,
+    ModelBuilder, PointId, RestoreError, SelfCollision, Solver, Surface, add_checksum, verify_checksum,
 };
 use proptest::prelude::*;
 
@@ -103,7 +103,7 @@ fn links_that_stop_sliding_continue_with_the_same_bits() {
         weights: [0.3, 0.3, 0.4],
     };
     let place = LinkSide::Space(Vec3::new(1.4, 0.4, 0.6));
-    let link = Link { on_surface: true, ..Link::new([place, face], 0.05) };
+    let link = Link { kind: LinkKind::Surface, ..Link::new([place, face], 0.05) };
     let mut solver = Solver::<f32>::new(sheet(1.0, ClothLists::DEFAULT), 1);
     let input = |solver: &Solver<f32>, formed: Option<Vec<Link>>, slides: bool| {
         let constraint = ConstraintFrame { formed, slides, friction: 0.5, ..ConstraintFrame::default() };

@@ -7,8 +7,9 @@ use crate::scenes::links::{PHYSICAL, model, momenta, place, point, points, run, 
 use crate::scenes::{LINKS, Vec3, frame, grid, pins, still};
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId, ConstraintFrame,
-    ExcludedSide, Exclusion, Falloff, FrameInput, LOAD_OF_HALF, Link, LinkForce, LinkMethod, LinkSide, Mass,
-    ModelBuilder, PointId, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView, Surface,
+    ExcludedSide, Exclusion, Falloff, FrameInput, LOAD_OF_HALF, Link, LinkForce, LinkKind, LinkMethod,
+    LinkSide, Mass, ModelBuilder, PointId, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView,
+    Surface,
 };
 use proptest::prelude::*;
 
@@ -306,13 +307,13 @@ proptest! {
 
 /// Runs a place above a face or beside it, and checks that both keep their momentum and angular momentum. Returns how far the place
 /// has come.
-fn pulled_to_a_face(start: Vec3, weights: [f64; 3], (rest, oblique): (f64, Option<[f64; 2]>)) -> Vec3 {
+fn pulled_to_a_face(start: Vec3, weights: [f64; 3], (rest, kind): (f64, LinkKind)) -> Vec3 {
     let face = [Vec3::zeros(), Vec3::x(), Vec3::z()];
     let mut sheet = Surface { positions: face.to_vec(), ..Surface::default() };
     sheet.faces.push(&[0, 1, 2]);
     let sheet = Cloth::new(sheet, Mass::PerPoint(1.0), LINKS);
     let sides = [point(0, 0), place(1, [0, 1, 2], weights)];
-    let link = Link { on_surface: true, oblique, ..Link::new(sides, rest) };
+    let link = Link { kind, ..Link::new(sides, rest) };
     let weak = ConstraintFrame { strength: 0.02, tangent_strength: 0.02, ..ConstraintFrame::default() };
     let constraint = ConstraintFrame { formed: Some(vec![link]), ..weak };
     let mut solver: Solver<f64> = Solver::new(model([points(&[start]), sheet]), 1);
@@ -331,14 +332,15 @@ fn pulled_to_a_face(start: Vec3, weights: [f64; 3], (rest, oblique): (f64, Optio
 #[test]
 fn links_on_a_face_keep_the_momentum_and_angular_momentum_of_both_sides() {
     // The place is not above its foot: along the face it is pulled at half a metre from where the face is pushed back.
-    let moved = pulled_to_a_face(Vec3::new(0.1, 0.5, 0.5), [0.4, 0.3, 0.3], (0.2, None));
+    let moved = pulled_to_a_face(Vec3::new(0.1, 0.5, 0.5), [0.4, 0.3, 0.3], (0.2, LinkKind::Surface));
     assert!(moved.y < 0.0);
 }
 
 #[test]
 fn links_beside_a_face_keep_the_momentum_and_angular_momentum_of_both_sides() {
     // The normal of the face points down, and the direction of the link up from the first edge and along both others.
-    let moved = pulled_to_a_face(Vec3::new(-0.4, 0.5, 0.2), [0.6, 0.0, 0.4], (-0.2, Some([0.6, 0.3])));
+    let oblique = LinkKind::Oblique([0.6, 0.3]);
+    let moved = pulled_to_a_face(Vec3::new(-0.4, 0.5, 0.2), [0.6, 0.0, 0.4], (-0.2, oblique));
     assert!(moved.y < 0.0 && moved.x > 0.0, "{moved}");
 }
 
@@ -355,8 +357,7 @@ fn sag_beside_a_border(tangent_strength: f64) -> f64 {
     let direction = [line.dot(&frame[0]), line.dot(&frame[1])].map(|part| part / line.norm());
     let weights = face.map(|corner| if corner.x == 0.0 { 0.5 } else { 0.0 });
     let foot = LinkSide::Collider { collider: ColliderId(0), points: corners.map(PointId), weights };
-    let link =
-        Link { on_surface: true, oblique: Some(direction), ..Link::new([point(0, 0), foot], line.norm()) };
+    let link = Link { kind: LinkKind::Oblique(direction), ..Link::new([point(0, 0), foot], line.norm()) };
     let mut builder = model([points(&[line])]);
     builder.collider(Collider { surface: plate }).expect("a good mesh");
     let strength = 20.0;

@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use crate::scenes::links::{PHYSICAL, model, point, points, run, tied};
 use crate::scenes::{Vec3, grid, sphere};
 use nucleus_core::{
-    ClothId, Collider, ColliderFrame, ColliderId, ConstraintFrame, FrameInput, Link, LinkMethod, LinkSide,
-    ModelBuilder, PointId, ResistanceModel, Solver, StateView,
+    ClothId, Collider, ColliderFrame, ColliderId, ConstraintFrame, FrameInput, Link, LinkKind, LinkMethod,
+    LinkSide, ModelBuilder, PointId, ResistanceModel, Solver, StateView,
 };
 
 /// A bead on a ball, pushed along it.
@@ -20,7 +20,7 @@ fn bead_on_ball(friction: f64, speed: f64) -> (ModelBuilder, FrameInput) {
     let top = ball.faces.triangles().find(|corners| corners.contains(&0)).expect("a face at the pole");
     let weights = top.map(|corner| if corner == 0 { 1.0 } else { 0.0 });
     let foot = LinkSide::Collider { collider: ColliderId(0), points: top.map(PointId), weights };
-    let link = Link { on_surface: true, ..Link::new([point(0, 0), foot], 0.01) };
+    let link = Link { kind: LinkKind::Surface, ..Link::new([point(0, 0), foot], 0.01) };
     let constraint = ConstraintFrame {
         formed: Some(vec![link]),
         slides: true,
@@ -92,7 +92,7 @@ fn a_point_that_slides_off_an_open_border_gains_no_energy() {
             (b - a).cross(&(c - a))
         };
         let rest = 0.05 * normal.y.signum();
-        let link = Link { on_surface: true, ..Link::new([point(0, 0), foot], rest) };
+        let link = Link { kind: LinkKind::Surface, ..Link::new([point(0, 0), foot], rest) };
         let constraint = ConstraintFrame {
             formed: Some(vec![link]),
             method: LinkMethod::Weld,

@@ -458,7 +458,7 @@ fn folds(nodes: &str) -> usize {
     let program = program(&of_nodes(nodes, ""));
     let constraints = program.first_input().constraints.clone();
     let links = constraints.iter().flat_map(|constraint| constraint.formed.iter().flatten());
-    links.filter(|link| link.fold.is_some()).count()
+    links.filter(|link| link.fold().is_some()).count()
 }
 
 // EVIDENCE: N2.3-5  edges that are joined hinge, and resist folding where `bend` says so

@@ -213,7 +213,7 @@ impl<R: Real, const N: usize> CombinedList<R, N> {
 fn row<R: Real, const N: usize>(at: u32, ends: &Ends, links: &[Link]) -> CombinedRow<R, N> {
     let link = &links[at as usize];
     let mut weights: [R; N] = std::array::from_fn(|k| R::from_f64(ends.weights[k]));
-    if link.fold.is_some() && link.sides.iter().all(|side| side.is_free()) {
+    if link.fold().is_some() && link.sides.iter().all(|side| side.is_free()) {
         // The rounded weights must still add up to zero: else the fold would be attracted to the origin.
         weights[N - 1] = weights[..N - 1].iter().fold(R::ZERO, |sum, &weight| sum - weight);
     }

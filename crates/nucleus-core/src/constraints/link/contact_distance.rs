@@ -24,7 +24,7 @@ impl<R: Real> Collisions<'_, R> {
     pub(super) fn distance(&self, link: &Link) -> f64 {
         let FrameInput { cloths, colliders, layer_range, .. } = self.frame;
         let material = match link.sides {
-            _ if link.fold.is_some() => None,
+            _ if link.fold().is_some() => None,
             [LinkSide::Cloth { cloth: a, .. }, LinkSide::Cloth { cloth: b, .. }] if a != b => {
                 let pair = [a, b].map(|cloth| &cloths[cloth.index()]);
                 ContactMaterial::<R>::for_cloths(pair, [1.0; 2], *layer_range).filter(|_| {

@@ -1,7 +1,7 @@
 //! Links of particles that die: a link follows its particle to another place in the object, and goes with it.
 
 use crate::constraints::link::lists::{ConstraintLinks, Links, Models};
-use crate::input::links::{Link, LinkSide};
+use crate::input::links::{Link, LinkKind, LinkSide};
 use crate::input::{ClothId, PointId};
 use crate::math::Real;
 
@@ -40,8 +40,10 @@ impl<R: Real> ConstraintLinks<R> {
         }
         links.truncate(kept);
         broken.truncate(kept);
-        for fold in links.iter_mut().filter_map(|link| link.fold.as_mut()) {
-            fold.holds = fold.holds.map(|hold| indices.get(hold as usize).copied().unwrap_or(u32::MAX));
+        for link in links {
+            if let LinkKind::Fold(fold) = &mut link.kind {
+                fold.holds = fold.holds.map(|hold| indices.get(hold as usize).copied().unwrap_or(u32::MAX));
+            }
         }
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::constraints::hinge::bending_weights;
 use crate::contact::collider::ColliderState;
-use crate::input::links::{ConstraintFrame, Fold, Link, LinkSide};
+use crate::input::links::{ConstraintFrame, Fold, Link, LinkKind, LinkSide};
 use crate::math::Real;
 use crate::model::Model;
 use crate::state::State;
@@ -38,8 +38,8 @@ pub fn fold_link(
     let rest = if vector.norm() <= flat { 0.0 } else { vector.norm() };
     let max_length = 2.0 * (edge[1] - edge[0]).norm() / root;
     let [first, second] = [weighted(sides[0], weights[0])?, weighted(sides[1], weights[1])?];
-    let fold = Some(Fold { max_length, holds });
-    (root > 0.0).then(|| Link { fold, ..Link::new([first, second], rest) })
+    let kind = LinkKind::Fold(Fold { max_length, holds });
+    (root > 0.0).then(|| Link { kind, ..Link::new([first, second], rest) })
 }
 
 fn weighted(side: LinkSide, weights: [f64; 3]) -> Option<LinkSide> {
@@ -62,14 +62,14 @@ impl<R: Real> ConstraintLinks<R> {
     ) -> bool {
         let prescribed = Prescribed { colliders, frame: settings };
         // sin((θ - θ_rest) / 2), from the sines of both halves.
-        let turn = |fold: &Fold, length: f64, rest: f64| {
+        let turn = |fold: Fold, length: f64, rest: f64| {
             let [sine, rest] = [length, rest].map(|length| fold.half_sine(length));
             let cosine = |sine: f64| (1.0 - sine * sine).sqrt();
             (sine * cosine(rest) - cosine(sine) * rest).abs()
         };
         let mut any = false;
         for (at, link) in self.links.iter().enumerate() {
-            let Some(fold) = link.fold.as_ref().filter(|_| !self.broken[at]) else { continue };
+            let Some(fold) = link.fold().filter(|_| !self.broken[at]) else { continue };
             let is_apart = fold.holds.iter().any(|&hold| self.broken.get(hold as usize) == Some(&true));
             let is_folded = settings.break_half_sine < 1.0 && {
                 let ends = Ends::new(link, &model.cloths);

@@ -40,7 +40,7 @@ fn joined(link: &Link) -> (bool, Joined) {
         LinkSide::Collider { collider, points, .. } => Some((false, collider.index(), of(points))),
         LinkSide::Space(_) => None,
     };
-    (link.fold.is_some(), link.sides.map(side))
+    (link.fold().is_some(), link.sides.map(side))
 }
 
 impl<R: Real> ConstraintLinks<R> {
@@ -58,7 +58,7 @@ impl<R: Real> ConstraintLinks<R> {
         let mut any = false;
         for (link, broken) in self.links.iter().zip(&mut self.broken) {
             let carries = breaking_load(settings.glue_strength * link.glue) * settings.glue_scale > 0.0
-                || link.fold.is_some();
+                || link.fold().is_some();
             any |= !carries && !*broken;
             *broken |= !carries;
         }
@@ -132,7 +132,7 @@ pub fn tear_chambers<R: Real>(cloths: &[ClothModel<R>], chambers: &mut [Chamber]
         let [LinkSide::Cloth { cloth, points, .. }, LinkSide::Cloth { cloth: other, .. }] = link.sides else {
             continue;
         };
-        if cloth != other || link.fold.is_some() {
+        if cloth != other || link.fold().is_some() {
             continue;
         }
         let model = &cloths[cloth.index()];

@@ -102,12 +102,12 @@ impl<R: Real> ConstraintLinks<R> {
         let mut joined = Vec::new();
         for (at, link) in (0..).zip(&links) {
             let ends = Ends::new(link, cloths);
-            if link.fold.is_none() {
+            if link.fold().is_none() {
                 joined.extend_from_slice(&ends.rows[..ends.count]);
             }
-            if link.on_surface {
+            if link.is_on_surface() {
                 own.surface.push(SurfaceRow::new(at, ends));
-            } else if link.fold.is_some() {
+            } else if link.fold().is_some() {
                 folds.push((at, ends));
             } else if is_plain(link, &ends, layout) {
                 let rest_length = R::from_f64(link.rest);
@@ -142,7 +142,7 @@ impl<R: Real> ConstraintLinks<R> {
     /// The links that join places and are whole.
     pub fn joining(&self) -> impl Iterator<Item = &Link> {
         let all = self.links.iter().zip(&self.broken);
-        all.filter(|(link, broken)| !**broken && link.fold.is_none()).map(|(link, _)| link)
+        all.filter(|(link, broken)| !**broken && link.fold().is_none()).map(|(link, _)| link)
     }
 
     /// Whether any of its links resist folding.
@@ -157,10 +157,10 @@ impl<R: Real> ConstraintLinks<R> {
 
     /// The strength factor of each link in a frame, 0 for broken ones.
     fn factors(&self, frame: &LinkFrame<'_, R>) -> Vec<f64> {
-        let factor = |(at, link): (usize, &Link)| match (self.broken[at], &link.fold) {
+        let factor = |(at, link): (usize, &Link)| match (self.broken[at], link.fold()) {
             (true, _) => 0.0,
             // Classic shares of the error do not grow with the angle.
-            (false, Some(fold)) if self.layout.is_physical => link.strength * frame.stiffening(fold, link),
+            (false, Some(fold)) if self.layout.is_physical => link.strength * frame.stiffening(&fold, link),
             (false, Some(_)) => link.strength,
             _ if self.layout.is_weld => 1.0,
             _ => link.strength * frame.drop(link),

@@ -110,7 +110,7 @@ pub fn max_weld_gap<R: Real>(
         links.constraints.iter().zip(&frame.constraints).filter(|(own, _)| own.layout.is_weld)
     {
         let prescribed = Prescribed { colliders: &contact.collider_states, frame: settings };
-        let holds = |link: &Link| !link.on_surface && link.fold.is_none();
+        let holds = |link: &Link| !link.is_on_surface() && link.fold().is_none();
         let whole = own.links.iter().zip(&own.broken).filter(|(link, broken)| !**broken && holds(link));
         for (link, _) in whole {
             let ends = Ends::new(link, &model.cloths);

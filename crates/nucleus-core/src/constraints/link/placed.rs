@@ -176,7 +176,7 @@ impl<R: Real> Placed<'_, R> {
 
     /// The direction of an oblique link. One that slides is along the normal, or beside.
     fn oblique(&self, link: &Link) -> Option<[f64; 2]> {
-        link.oblique.filter(|_| !self.prescribed.frame.slides)
+        link.oblique().filter(|_| !self.prescribed.frame.slides)
     }
 
     /// The gradient of d·`unit`, with the turn of the face where that is cloth. `hold` is the vector that turns with it.

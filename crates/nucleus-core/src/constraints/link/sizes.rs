@@ -33,12 +33,12 @@ impl ModelSizes<'_> {
             LinkSide::Space(place) => is_in_range(place),
         };
         let factors = [link.strength, link.tangent_strength, link.glue, link.weight[0], link.weight[1]];
-        let lengths = [link.length, link.fold.map_or(0.0, |fold| fold.max_length)];
+        let lengths = [link.length, link.fold().map_or(0.0, |fold| fold.max_length)];
         link.sides.iter().all(is_side)
             && link.rest.abs() <= MAX_LENGTH
-            && link.oblique.iter().flatten().all(|component| component.abs() <= 1.0)
+            && link.oblique().iter().flatten().all(|component| component.abs() <= 1.0)
             && lengths.iter().all(|length| (0.0..=MAX_LENGTH).contains(length))
             && factors.iter().all(|factor| (0.0..=MAX_FACTOR).contains(factor))
-            && !(link.on_surface && matches!(link.sides[1], LinkSide::Space(_)))
+            && !(link.is_on_surface() && matches!(link.sides[1], LinkSide::Space(_)))
     }
 }

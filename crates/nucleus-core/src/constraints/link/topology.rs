@@ -63,7 +63,7 @@ impl Topology {
     /// The topology of all surfaces that these links are on.
     pub fn new<R: Real>(links: &[Link], cloths: &[ClothModel<R>], colliders: &[ColliderModel]) -> Self {
         let mut surfaces: Vec<(SurfaceId, CsrLists)> = Vec::new();
-        for link in links.iter().filter(|link| link.on_surface) {
+        for link in links.iter().filter(|link| link.is_on_surface()) {
             let Some(id) = SurfaceId::of(&link.sides[1]) else { continue };
             if surfaces.iter().any(|(known, _)| *known == id) {
                 continue;

@@ -8,9 +8,9 @@ use nucleus_core::nalgebra::Matrix3;
 use nucleus_core::{
     Bending, Birth, Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId,
     ConstraintFrame, Elements, Falloff, Field, FieldKind, FieldSide, Fold, ForceField, FrameInput,
-    InputAttract, InputMesh, InvalidInput, Link, LinkForce, LinkSide, Liquid, Mass, ModelBuilder, Noise,
-    ParticleChange, Particles, PointField, PointId, Pressure, PushOut, Reach, ResistanceModel, SelfCollision,
-    Solver, StateView, Stiffness, Surface, Volume, VolumeAxis, VolumeShape, WindField,
+    InputAttract, InputMesh, InvalidInput, Link, LinkForce, LinkKind, LinkSide, Liquid, Mass, ModelBuilder,
+    Noise, ParticleChange, Particles, PointField, PointId, Pressure, PushOut, Reach, ResistanceModel,
+    SelfCollision, Solver, StateView, Stiffness, Surface, Volume, VolumeAxis, VolumeShape, WindField,
 };
 
 mod numbers;
@@ -175,7 +175,7 @@ fn constraints() -> Vec<ConstraintFrame> {
         Link::new([place, point(1, 3)], 0.05),
         Link::new([point(0, 7), on_ball], 0.05),
         Link::new([point(0, 12), LinkSide::Space(Vec3::new(0.1, 0.4, 0.0))], 0.05),
-        Link { fold: Some(fold), ..Link::new([place, hinge], 0.05) },
+        Link { kind: LinkKind::Fold(fold), ..Link::new([place, hinge], 0.05) },
     ];
     let ramp = Falloff { distance: 1.0, samples: [1.0; Falloff::SAMPLES] };
     let force = Some(LinkForce { acceleration: 0.1, falloff: ramp });
@@ -191,8 +191,8 @@ fn constraints() -> Vec<ConstraintFrame> {
         dropoff: Some(ramp),
         ..ConstraintFrame::default()
     };
-    let sliding = Link { on_surface: true, ..Link::new([point(1, 15), place], 0.02) };
-    let oblique = Link { oblique: Some([0.6, 0.3]), ..sliding };
+    let sliding = Link { kind: LinkKind::Surface, ..Link::new([point(1, 15), place], 0.02) };
+    let oblique = Link { kind: LinkKind::Oblique([0.6, 0.3]), ..sliding };
     let rubber = ConstraintFrame {
         formed: Some(vec![sliding, oblique]),
         slides: true,

@@ -2,7 +2,7 @@
 
 use nucleus_core::{
     Bending, Birth, ClothFrame, ColliderFrame, ConstraintFrame, Falloff, Field, FieldKind, Fold, ForceField,
-    FrameInput, GroundPlane, InputAttract, InputMesh, Link, LinkForce, LinkSide, Liquid, Noise,
+    FrameInput, GroundPlane, InputAttract, InputMesh, Link, LinkForce, LinkKind, LinkSide, Liquid, Noise,
     ParticleChange, Pin, PointField, Pressure, PushOut, Reach, ResistanceModel, SelfCollision, Stiffness,
     Volume, VolumeAxis, WindField,
 };
@@ -239,24 +239,14 @@ impl<'a> Numbers<'a> {
     }
 
     fn link(&mut self, link: &'a mut Link) {
-        let Link {
-            sides,
-            rest,
-            on_surface: _,
-            oblique,
-            strength,
-            tangent_strength,
-            glue,
-            weight,
-            length,
-            fold,
-        } = link;
+        let Link { sides, kind, rest, strength, tangent_strength, glue, weight, length } = link;
         self.add("length of a link", [rest, length]);
         self.add("strength of a link", [strength, tangent_strength, glue]);
         self.add("weight of a link", weight);
-        self.add("direction of a link", oblique.iter_mut().flatten());
-        if let Some(Fold { max_length, holds: _ }) = fold {
-            self.add("fold", [max_length]);
+        match kind {
+            LinkKind::Distance | LinkKind::Surface => {}
+            LinkKind::Oblique(direction) => self.add("direction of a link", direction),
+            LinkKind::Fold(Fold { max_length, holds: _ }) => self.add("fold", [max_length]),
         }
         for side in sides {
             match side {

@@ -1,7 +1,7 @@
 //! Forming links: which elements of the members are joined, and where, from positions at a time.
 
 use nalgebra::Vector3;
-use nucleus_core::{Link, LinkSide, PointId};
+use nucleus_core::{Link, LinkKind, LinkSide, PointId};
 
 use crate::attributes::{ElementKind, Ramp, dynamic_constraint as con};
 
@@ -62,7 +62,7 @@ impl Forming<'_> {
             _ => self.pairs(),
         };
         let constant = self.values.choice(&con::REST_LENGTH_METHOD) == con::CONSTANT_REST_LENGTH.0;
-        let rest = |link: &Link| match constant && link.fold.is_none() {
+        let rest = |link: &Link| match constant && link.fold().is_none() {
             true if link.rest < 0.0 => -1.0,
             true => 1.0,
             false => link.rest,
@@ -290,9 +290,15 @@ impl Forming<'_> {
         };
         let (ours, theirs) = (from.factors(a.element), to.factors(b.element));
         let [strength, tangent_strength, glue] = [0, 1, 2].map(|k| ours[k] * theirs[k]);
+        let kind = match (frame, beside) {
+            (None, _) => LinkKind::Distance,
+            (Some(_), None) => LinkKind::Surface,
+            (Some(_), Some([along, across, _])) => {
+                LinkKind::Oblique([along, across].map(|axis| line.dot(&axis) / rest))
+            }
+        };
         Link {
-            on_surface: frame.is_some(),
-            oblique: beside.map(|[along, across, _]| [along, across].map(|axis| line.dot(&axis) / rest)),
+            kind,
             strength,
             tangent_strength,
             glue,
