@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use crate::scenes::links::{PHYSICAL, model, momenta, place, point, points, run, tied};
 use crate::scenes::{LINKS, Vec3, frame, grid, pins, still};
+use nalgebra::Rotation3;
 use nucleus_core::{
     Cloth, ClothFrame, ClothId, ClothLists, Collider, ColliderFrame, ColliderId, ConstraintFrame,
     ExcludedSide, Exclusion, Falloff, FrameInput, LOAD_OF_HALF, Link, LinkForce, LinkKind, LinkMethod,
-    LinkSide, Mass, ModelBuilder, PointId, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView,
+    LinkSide, Mass, ModelBuilder, Pin, PointId, ResistanceModel, STIFFNESS_PER_RESISTANCE, Solver, StateView,
     Surface,
 };
 use proptest::prelude::*;
@@ -167,6 +168,38 @@ fn glue_breaks_at_the_stated_load_on_any_mesh() {
         let load = broken_at.expect("it breaks");
         assert!((load / limit - 1.0).abs() < 0.05, "{side} points: {load} N/m, not {limit}");
     }
+}
+
+/// How many welds break between two points, 0.1 m apart, that pins carry round an axis by a radian and move apart meanwhile.
+fn broken_between_pins(separation: f64) -> u64 {
+    let places = [Vec3::x(), Vec3::x() * 1.1];
+    let weld = Link::new([point(0, 0), point(0, 1)], 0.1);
+    let glue = ConstraintFrame { can_break: true, glue_strength: 0.5, ..ConstraintFrame::default() };
+    let constraint = ConstraintFrame { formed: Some(vec![weld]), method: LinkMethod::Weld, ..glue };
+    let mut solver: Solver<f32> = Solver::new(model([points(&places)]), 1);
+    let mut input = tied(1, PHYSICAL, constraint);
+    let mut broken = 0;
+    for frame in 0..24 {
+        let at = |frame: u32, place: Vec3| {
+            let share = f64::from(frame) / 24.0;
+            Rotation3::from_axis_angle(&Vec3::z_axis(), share) * (place * (1.0 + separation * share))
+        };
+        let pin = |(k, place): (u32, Vec3)| {
+            let [start, end] = [frame, frame + 1].map(|frame| at(frame, place));
+            Pin { cloth: ClothId(0), point: PointId(k), start, end }
+        };
+        input.pins = (0..).zip(places).map(pin).collect();
+        broken += u64::from(solver.step(&input, &mut ()).broken_links > 0);
+        input.constraints[0].formed = None;
+    }
+    broken
+}
+
+#[test]
+fn a_weld_between_pins_breaks_when_they_part_and_not_by_rounding() {
+    assert_eq!(broken_between_pins(0.0), 0);
+    assert_eq!(broken_between_pins(-0.1), 0);
+    assert!(broken_between_pins(0.1) > 0);
 }
 
 #[test]

@@ -18,6 +18,7 @@ use crate::schedule::PassTime;
 use crate::state::{Chamber, State};
 
 use super::lists::{ConstraintLinks, Links};
+use super::pairs::PairGroup;
 
 /// Load in N/m that breaks half-strong glue (`glueStrength` 0.5).
 pub const LOAD_OF_HALF: f64 = 100.0;
@@ -65,16 +66,23 @@ impl<R: Real> ConstraintLinks<R> {
         any
     }
 
-    /// Breaks the links whose load in a substep of `length` seconds was above theirs; of the welds round a point, those
-    /// along which it tears. Whether there were any.
-    fn break_links(&mut self, settings: &ConstraintFrame, state: &State<R>, length: f64) -> bool {
+    /// Breaks the links whose load in a substep that ends `now` was above theirs; of the welds round a point, those along
+    /// which it tears. Whether there were any.
+    fn break_links(&mut self, settings: &ConstraintFrame, state: &State<R>, now: PassTime) -> bool {
         let Self { links, broken, pairs, nodes, combined, surface, .. } = self;
-        let limit =
-            |link: &Link| breaking_load(settings.glue_strength * link.glue) * settings.glue_scale * length;
+        let limit = |link: &Link| {
+            breaking_load(settings.glue_strength * link.glue) * settings.glue_scale * now.length
+        };
         let mut loads = vec![Vector3::zeros(); if pairs.rows.len() > 0 { links.len() } else { 0 }];
         pairs.loads.take(pairs.rows.groups().iter().map(|group| &group.link), |at, impulse| {
             loads[at as usize] = impulse;
         });
+        let rest_scale = settings.rest_scale_at(now.at);
+        for (at, ends) in pairs.rows.groups().iter().flat_map(PairGroup::pairs) {
+            if is_held_by_pins(state, ends, links[at as usize].rest * rest_scale) {
+                loads[at as usize] = Vector3::zeros();
+            }
+        }
         let whole = |at: u32| {
             let link = &links[at as usize];
             (!broken[at as usize]).then(|| [link.length, limit(link) * link.length])
@@ -100,6 +108,22 @@ impl<R: Real> ConstraintLinks<R> {
     }
 }
 
+/// Rounding errors of a length, in those of the numbers that it is computed from.
+const ROUNDING: f64 = 16.0;
+
+/// Whether both points are pinned and not farther apart than the length at rest, up to rounding. No projection moves them, so
+/// the rounding error of the length of a rigid link would count as an unlimited load. Such a link breaks when the pins part.
+fn is_held_by_pins<R: Real>(state: &State<R>, ends: [u32; 2], rest: f64) -> bool {
+    let rows = ends.map(|row| state.displacement[row as usize]);
+    if rows.iter().any(|row| row.0[3] > R::ZERO) {
+        return false;
+    }
+    let [a, b] = ends.map(|row| Vector3::from(state.position(row)));
+    let length = (b - a).norm();
+    let moved: f64 = rows.iter().map(|row| Vector3::from(row.xyz().map(R::to_f64)).norm()).sum();
+    length - rest <= ROUNDING * R::EPSILON.to_f64() * (moved + length)
+}
+
 /// Breaks links and folds in a substep that ends `now`. Whether any broke.
 pub fn break_links<R: Real>(
     links: &mut Links<R>,
@@ -110,7 +134,7 @@ pub fn break_links<R: Real>(
 ) -> bool {
     let mut any = false;
     for (own, settings) in links.constraints.iter_mut().zip(&frame.constraints) {
-        any |= settings.can_break && own.break_links(settings, state, now.length);
+        any |= settings.can_break && own.break_links(settings, state, now);
         any |= own.has_folds() && own.break_folds(scene, state, settings, now.at);
     }
     any

@@ -28,6 +28,14 @@ pub struct PairGroup<R> {
     pub(super) link: [u32; 4],
 }
 
+impl<R> PairGroup<R> {
+    /// Its links and their points.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (u32, [u32; 2])> {
+        let pair = |lane: usize| (self.link[lane], self.row.ends.map(|ends| ends[lane]));
+        (0..4).map(pair).filter(|(link, _)| *link != NO_LINK)
+    }
+}
+
 #[derive(Debug, Clone, Copy)]
 struct Factors<R> {
     share: [R; 4],
