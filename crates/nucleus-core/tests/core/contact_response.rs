@@ -272,25 +272,33 @@ fn push_out_by_a_small_share_passes_a_surface_that_holds_points_on_its_far_side(
     assert!((height - thickness).abs() < 0.1 * thickness, "{height}, not {thickness}");
 }
 
+/// The speed of the centre of a sheet in m/s after a ball has pushed it out. It starts `aside` from its place over the ball, in
+/// metres along X and Z.
+fn speed_after_push_out(share: f64, aside: [f64; 2]) -> f64 {
+    let mut sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);
+    sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(aside[0] - 0.2, 0.3, aside[1] - 0.2));
+    let cloth = Cloth::new(sheet, Mass::PerArea(0.2), LINKS);
+    let mut solver = solver(vec![cloth], vec![crate::scenes::sphere(0.5, Vec3::zeros())]);
+    let push_out = PushOut { share, radius: 1.0 };
+    let ball = ColliderFrame { collide: true, push_out, thickness: THICKNESS, ..ColliderFrame::default() };
+    let sheet = ClothFrame { thickness: THICKNESS, ..still() };
+    let input = FrameInput { colliders: vec![ball], ..weightless(vec![sheet]) };
+    (0..12).for_each(|_| _ = solver.step(&input, &mut ()));
+    assert!((0..81).all(|point| solver.point(FIRST, point).norm() > 0.45), "it is outside");
+    let mut velocities = Vec::new();
+    solver.velocities(FIRST, 1.0, &mut velocities);
+    (velocities.iter().map(|v| Vec3::from(v.map(f64::from))).sum::<Vec3>() / 81.0).norm()
+}
+
 #[test]
 fn a_sheet_that_is_pushed_out_of_a_ball_is_not_thrown() {
-    for share in [0.3, 1.0] {
-        let mut sheet = grid(9, 9, Vec3::x() * 0.4, Vec3::z() * 0.4);
-        sheet.positions.iter_mut().for_each(|p| *p += Vec3::new(-0.2, 0.3, -0.2));
-        let cloth = Cloth::new(sheet, Mass::PerArea(0.2), LINKS);
-        let mut solver = solver(vec![cloth], vec![crate::scenes::sphere(0.5, Vec3::zeros())]);
-        let push_out = PushOut { share, radius: 1.0 };
-        let ball =
-            ColliderFrame { collide: true, push_out, thickness: THICKNESS, ..ColliderFrame::default() };
-        let sheet = ClothFrame { thickness: THICKNESS, ..still() };
-        let input = FrameInput { colliders: vec![ball], ..weightless(vec![sheet]) };
-        (0..12).for_each(|_| _ = solver.step(&input, &mut ()));
-        assert!((0..81).all(|point| solver.point(FIRST, point).norm() > 0.45), "it is outside");
-        let mut velocities = Vec::new();
-        solver.velocities(FIRST, 1.0, &mut velocities);
-        let mean = velocities.iter().map(|v| Vec3::from(v.map(f64::from))).sum::<Vec3>() / 81.0;
-        // The links that the ball has stretched by up to 73 % spring back; without its velocity back it has 10 and 24 m/s.
-        assert!(mean.norm() < 2.0, "{share}: {} m/s", mean.norm());
+    // A share of 1 pushes it out before its links pull. Of a share of 0.3 they stretch by up to 73 % meanwhile, and what they
+    // spring back with depends on the start by chance: over twelve starts 1.2 to 3.1 m/s, 1.9 in the mean, where a share of 1
+    // gives 0.03 to 0.08. A push that keeps its velocity gives 10 and 24 m/s.
+    for (share, most) in [(0.3, 3.0), (1.0, 0.3)] {
+        let starts = (0..4).map(|k| [0.003, -0.002].map(|step| step * f64::from(k)));
+        let mean = starts.map(|aside| speed_after_push_out(share, aside)).sum::<f64>() / 4.0;
+        assert!(mean < most, "{share}: {mean} m/s");
     }
 }
 
