@@ -41,7 +41,7 @@ fn saved() -> Vec<u8> {
 static SAVED: OnceLock<Vec<u8>> = OnceLock::new();
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
     fn restoring_damaged_content_never_panics(at in 0.0..1.0f64, byte: u8, cut in 0usize..3) {

@@ -136,7 +136,8 @@ fn a_fast_ball_never_gets_through_a_hanging_sheet() {
             builder.collider(Collider { surface: ball.clone() }).expect("a good mesh");
             let mut solver = Solver::<f32>::new(builder, 1);
             let mut watch = Wrong { from, speed, steps: 0, points: 33 * 33, wrong: 0, passed_plane: false };
-            for step in 0..6 {
+            // It reaches the sheet in the first frame; after the fourth it has pulled it out by 1.4 m.
+            for step in 0..4 {
                 let at = |frame: f64| {
                     ball.positions.iter().map(|p| p + Vec3::z() * (speed * frame / 24.0)).collect()
                 };

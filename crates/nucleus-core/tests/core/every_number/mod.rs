@@ -268,7 +268,7 @@ fn outcome(builder: &ModelBuilder, input: &FrameInput) -> (u64, bool) {
 const MAY_BE_INFINITE: [&str; 4] =
     ["lifespan of a birth", "lifespan of a change", "yield limit", "largest distance"];
 
-fn check_every_number(resistance: ResistanceModel) {
+fn check_every_number(resistance: ResistanceModel, bad_numbers: &[f64]) {
     let builder = model();
     let usual = input(&builder, resistance);
     assert_eq!(outcome(&builder, &usual), (0, true), "the frame itself is valid");
@@ -277,7 +277,7 @@ fn check_every_number(resistance: ResistanceModel) {
     all.frame(&mut count_of);
     let mut wrong = Vec::new();
     for at in 0..all.0.len() {
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e30, -1e30, -1.0] {
+        for &bad in bad_numbers {
             let mut planted = usual.clone();
             let mut numbers = Numbers::default();
             numbers.frame(&mut planted);
@@ -296,12 +296,14 @@ fn check_every_number(resistance: ResistanceModel) {
 
 #[test]
 fn every_number_of_a_physical_frame_is_reported_or_harmless() {
-    check_every_number(physical(4.0));
+    let infinite = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    check_every_number(physical(4.0), &[&infinite[..], &[1e30, -1e30, -1.0]].concat());
 }
 
 #[test]
 fn every_number_of_a_classic_frame_is_reported_or_harmless() {
-    check_every_number(ResistanceModel::Classic);
+    // Which numbers are replaced does not depend on the model of resistance, what the solver does with the rest does.
+    check_every_number(ResistanceModel::Classic, &[f64::NAN, 1e30, -1.0]);
 }
 
 #[test]
