@@ -2,8 +2,7 @@
 //!
 //! Wind is the velocity of the air, relative to which drag and lift act; cloth that faces it therefore catches more
 //! than cloth on edge (§3.1). Drag is linear in velocity and per 1/24 s. It acts along the normal, and along the
-//! surface with the share `tangentialDrag`, as recorded output of the original shows. Its discrete form is two implicit
-//! half-steps; that of Classic particles is an exponential, which matches recorded output of the original to 1e-6.
+//! surface with the share `tangentialDrag`, as recorded output of the original shows. [`DragStep`] has its discrete forms.
 //!
 //! Lift acts at right angles to the motion through the air, in the plane of motion and normal, and does no work. Its
 //! acceleration is `lift` times density over mass times v² sin α cos α at an angle of attack α, with v in m/s: the lift
@@ -44,8 +43,18 @@ pub struct AirForces {
     lift: f64,
     tangential_drag: f64,
     h: f64,
-    /// Whether velocities decay exponentially: particles in the Classic reading.
-    exponential: bool,
+    step: DragStep,
+}
+
+/// The discrete form of drag in a time step, which acts on the velocity that gravity has changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum DragStep {
+    /// An implicit step, in the Physical reading: the terminal speed is exact at any length of the step.
+    Implicit,
+    /// Two implicit half-steps, on cloth in the Classic reading, as recorded falls of the original show.
+    HalfSteps,
+    /// An exponential, on particles in the Classic reading, which matches recorded output of the original to 1e-6.
+    Exponential,
 }
 
 /// Share of the rate of drag that particles feel in the Classic reading: recorded falls give 0.99913 at steps of 1/72 s
@@ -61,12 +70,20 @@ impl AirForces {
             return None;
         }
         let wind = if cloth.feels_wind { frame.wind } else { Vector3::zeros() } + cloth.local_wind;
-        Some(Self { wind, drag, lift, tangential_drag: cloth.tangential_drag, h, exponential: false })
+        let step = match frame.resistance {
+            ResistanceModel::Classic => DragStep::HalfSteps,
+            ResistanceModel::Physical { .. } => DragStep::Implicit,
+        };
+        Some(Self { wind, drag, lift, tangential_drag: cloth.tangential_drag, h, step })
     }
 
     /// The same forces on particles.
-    pub fn on_particles(self, resistance: ResistanceModel) -> Self {
-        Self { exponential: resistance == ResistanceModel::Classic, ..self }
+    pub fn on_particles(self) -> Self {
+        let step = match self.step {
+            DragStep::HalfSteps => DragStep::Exponential,
+            step => step,
+        };
+        Self { step, ..self }
     }
 
     /// The share of its velocity through the air that a particle keeps in a step.
@@ -76,11 +93,12 @@ impl AirForces {
 
     /// The share of a velocity that remains after a step at this rate of drag per second.
     fn remaining_at(&self, rate: f64) -> f64 {
-        if self.exponential {
-            return libm::exp(-PARTICLE_DRAG * rate * self.h);
+        let decay = rate * self.h;
+        match self.step {
+            DragStep::Implicit => 1.0 / (1.0 + decay),
+            DragStep::HalfSteps => 1.0 / ((1.0 + decay / 2.0) * (1.0 + decay / 2.0)),
+            DragStep::Exponential => libm::exp(-PARTICLE_DRAG * decay),
         }
-        let half = 1.0 + rate * self.h / 2.0;
-        1.0 / (half * half)
     }
 
     /// The forces on a point with these factors.

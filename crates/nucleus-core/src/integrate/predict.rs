@@ -87,7 +87,7 @@ impl<'a, R: Real> Prediction<'a, R> {
         let steps = [step, step + (seconds / h).round()];
         let gravity = gravity_kick(frame.gravity.into(), h, steps, now.max_speeds[index]);
         let air = AirForces::new(frame, settings, cloth.point_mass, seconds);
-        let air = air.map(|air| if cloth.has_faces { air } else { air.on_particles(frame.resistance) });
+        let air = air.map(|air| if cloth.has_faces { air } else { air.on_particles() });
         let forces = ExternalForces {
             gravity: if settings.feels_gravity { gravity } else { [R::ZERO; 3] },
             impulse: <[f64; 3]>::from(settings.local_force * seconds).map(R::from_f64),

@@ -305,7 +305,7 @@ impl Flight {
         let gravity = if cloth.feels_gravity { frame.gravity } else { Vector3::zeros() };
         let wind = if cloth.feels_wind { frame.wind } else { Vector3::zeros() } + cloth.local_wind;
         let air = AirForces::new(frame, cloth, point_mass, h);
-        let remaining = air.map_or(1.0, |air| air.on_particles(frame.resistance).remaining());
+        let remaining = air.map_or(1.0, |air| air.on_particles().remaining());
         Self { acceleration: gravity + cloth.local_force / mass, wind, remaining, h }
     }
 

@@ -2,8 +2,8 @@
 
 use crate::scenes::{LINKS, Vec3, frame, grid, one_cloth, physical, pins, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, FrameInput, Mass, ModelBuilder, ResistanceModel, Solver,
-    StateView, Surface,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, Mass, ModelBuilder, ResistanceModel,
+    Solver, StateView, Surface,
 };
 
 const CLOTH: ClothId = ClothId(0);
@@ -179,4 +179,39 @@ fn wind_accelerates_a_sheet_that_faces_it_and_not_one_on_edge() {
     let exact = 2.0 * (1.0 - (1.0 - (-rate).exp()) / rate);
     assert!((faced.z / exact - 1.0).abs() < 0.01, "{faced:?} for {exact}");
     assert_eq!(carried(Vec3::x() * 2.0).norm(), 0.0);
+}
+
+#[test]
+fn the_terminal_speed_in_still_air_is_that_of_the_drag_whatever_the_mass() {
+    // Drag takes the velocity at the rate 24 drag / mass, of a sheet along its normal.
+    let terminal = |drag: f64, mass: f64| 9.81 * mass / (24.0 * drag);
+    for (drag, mass) in [(0.01, 0.00027), (0.01, 0.01), (2.0, 0.05)] {
+        let input = |elements| {
+            // Particles feel drag from all sides.
+            let tangential_drag = if elements == Elements::Points { 1.0 } else { 0.0 };
+            let settings = ClothFrame { drag, tangential_drag, elements, ..still() };
+            FrameInput { cloths: vec![settings], ..frame(3, physical(48.0)) }
+        };
+        let mut builder = ModelBuilder::new();
+        let particle = Surface { positions: vec![Vec3::zeros()], ..Surface::default() };
+        builder
+            .cloth(Cloth::new(particle, Mass::PerPoint(mass), ClothLists { air: true, ..ClothLists::NONE }))
+            .expect("a particle");
+        let sheet = grid(3, 3, Vec3::x() * 0.2, Vec3::z() * 0.2);
+        let mut of_sheet = ModelBuilder::new();
+        of_sheet
+            .cloth(Cloth::new(sheet, Mass::PerPoint(mass), ClothLists { air: true, ..LINKS }))
+            .expect("a sheet");
+        for (builder, elements) in [(builder, Elements::Points), (of_sheet, Elements::Faces)] {
+            let mut solver = Solver::<f32>::new(builder, 1);
+            let mut heights = [0.0; 2];
+            for _ in 0..48 {
+                solver.step(&input(elements), &mut ());
+                heights = [heights[1], solver.point(CLOTH, 0).y];
+            }
+            let speed = 24.0 * (heights[0] - heights[1]);
+            let ratio = speed / terminal(drag, mass);
+            assert!((ratio - 1.0).abs() < 2e-3, "{drag} {mass} {elements:?}: {ratio}");
+        }
+    }
 }
