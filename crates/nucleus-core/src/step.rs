@@ -11,7 +11,8 @@
 //!
 //! Free points take all of these stages at once ([`crate::particles::free`]).
 //!
-//! Normals and `pushOut` come once at the start of a substep, damping and the observer once at its end.
+//! Normals and `pushOut` come once at the start of a substep, the observer once at its end; damping at the end of some time
+//! steps, the last of a substep among them.
 
 use std::ops::{ControlFlow, Range};
 
@@ -173,11 +174,11 @@ fn solve_substeps<R: CompiledReal>(
             let Solver { model, state, contact, .. } = solver;
             let splits = splits(model, state, contact, frame, schedule, schedule.span(step), &max_speeds);
             let direction = schedule.direction(step, solver.state.frames);
-            let schedule = plans.get(frame, splits);
-            for (index, span) in schedule.time_steps(step) {
+            let split = plans.get(frame, splits);
+            for (index, span) in split.time_steps(step) {
                 let now = TimeStep {
                     frame,
-                    schedule,
+                    schedule: split,
                     index,
                     span,
                     direction,
@@ -186,8 +187,9 @@ fn solve_substeps<R: CompiledReal>(
                 };
                 solve_time_step(solver, &now, counters, observer)?;
             }
+            damp_velocities(solver, frame, schedule, step, &alternates);
         }
-        end_substep(solver, frame, schedule, substep, &alternates, counters);
+        end_substep(solver, frame, schedule, substep, counters);
         observer.enter(Stage::Observe);
         observer.substep(SubstepIndex { substep, substeps: schedule.substeps }, solver);
     }
@@ -219,13 +221,25 @@ fn begin_substep<R: CompiledReal>(
     }
 }
 
-/// Births, deaths, damping and broken links, once per substep.
+/// Damps the cloths and links that are due at the end of a time step.
+fn damp_velocities<R: CompiledReal>(
+    solver: &mut Solver<R>,
+    frame: &FrameInput,
+    schedule: &Schedule<R>,
+    step: u32,
+    alternates: &[bool],
+) {
+    let Solver { model, state, contact, links, pool, .. } = solver;
+    damp(&model.cloths, state, frame, (schedule, step), alternates, pool);
+    damp_links(links, (model, &contact.collider_states), state, frame, (schedule, step));
+}
+
+/// Births, deaths, and broken links, once per substep.
 fn end_substep<R: CompiledReal>(
     solver: &mut Solver<R>,
     frame: &FrameInput,
     schedule: &Schedule<R>,
     substep: u32,
-    alternates: &[bool],
     counters: &mut ContactCounters,
 ) {
     let substep_length = schedule.h * f64::from(schedule.steps);
@@ -243,10 +257,8 @@ fn end_substep<R: CompiledReal>(
         find_pieces(&mut model.cloths, links);
     }
     let has_lost_links = age_particles(solver, frame, schedule, substep, counters);
-    damp(&solver.model.cloths, &mut solver.state, frame, alternates, substep_length, &solver.pool);
     conserve_velocities(&solver.model.cloths, &mut solver.state, frame, substep_length);
     let Solver { model, state, contact, links, .. } = solver;
-    damp_links(links, (model, &contact.collider_states), state, frame, end);
     if has_broken || has_lost_links {
         update_pair_filter(contact, (model, state), links, frame, true);
     }

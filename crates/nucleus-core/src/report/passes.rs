@@ -69,13 +69,7 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
         PassCost { name: "links", rows, sweeps: sweeps * times as f64 }
     };
     passes.extend(schedule.links.iter().map(pass));
-    let damped = |(cloth, settings): &(&ClothModel<R>, &ClothFrame)| {
-        let (stretch_damp, damp) = (settings.stretch_damp, settings.damp);
-        cloth.lists.damp && Damping { stretch_damp, damp, substep: schedule.h }.is_felt()
-    };
-    let damped = solver.model.cloths.iter().zip(&frame.cloths).filter(damped);
-    let damped_links: usize = damped.map(|(cloth, _)| cloth.stretch.len()).sum();
-    passes.push(PassCost { name: "damp", rows: damped_links, sweeps: f64::from(schedule.substeps) });
+    passes.push(damping_pass(solver, frame, &schedule));
     passes.extend(contact_passes(solver, frame, &schedule));
     let of_field = |field: &Field| -> usize {
         field.targets.iter().map(|(cloth, _)| solver.model.cloths[cloth.index()].points().len()).sum()
@@ -104,6 +98,21 @@ pub fn passes<R: Real>(solver: &Solver<R>, frame: &FrameInput) -> Vec<PassCost> 
     passes.push(PassCost { name: "maps", rows: factors, sweeps: f64::from(steps) });
     passes.retain(|pass| pass.rows > 0 && pass.sweeps > 0.0);
     passes
+}
+
+/// The pass that damps: the mean number of its sweeps.
+fn damping_pass<R: Real>(solver: &Solver<R>, frame: &FrameInput, schedule: &Schedule<R>) -> PassCost {
+    let (mut rows, mut evaluations) = (0, 0.0);
+    for (cloth, settings) in
+        solver.model.cloths.iter().zip(&frame.cloths).filter(|(cloth, _)| cloth.lists.damp)
+    {
+        let damping = Damping::new(settings, schedule, frame.resistance);
+        if damping.is_felt() {
+            rows += cloth.stretch.len();
+            evaluations += cloth.stretch.len() as f64 * f64::from(schedule.substeps * damping.times.sweeps);
+        }
+    }
+    PassCost { name: "damp", rows, sweeps: evaluations / rows.max(1) as f64 }
 }
 
 /// The pass over liquids: the mean number of their time steps, as they are now.

@@ -2,7 +2,7 @@
 
 use crate::scenes::{LINKS, Vec3, frame, grid, one_cloth, physical, pins, still};
 use nucleus_core::{
-    Cloth, ClothFrame, ClothId, ClothLists, Elements, FrameInput, Mass, ModelBuilder, ResistanceModel,
+    Cloth, ClothFrame, ClothId, ClothLists, Elements, Faces, FrameInput, Mass, ModelBuilder, ResistanceModel,
     Solver, StateView, Surface,
 };
 
@@ -179,6 +179,49 @@ fn wind_accelerates_a_sheet_that_faces_it_and_not_one_on_edge() {
     let exact = 2.0 * (1.0 - (1.0 - (-rate).exp()) / rate);
     assert!((faced.z / exact - 1.0).abs() < 0.01, "{faced:?} for {exact}");
     assert_eq!(carried(Vec3::x() * 2.0).norm(), 0.0);
+}
+
+/// The angle below the horizontal, in degrees, at which a triangle arrives in a second that starts level and is hinged along a
+/// side of a metre: each of its two links loses relative velocity at the rate `damp` per 1/24 s.
+fn damped_fall_of_a_triangle(damp: f64, input: &FrameInput) -> f64 {
+    let height = 0.75f64.sqrt();
+    let positions = vec![Vec3::zeros(), Vec3::x(), Vec3::new(0.5, 0.0, height)];
+    let mut faces = Faces::default();
+    faces.push(&[0, 1, 2]);
+    let surface = Surface { positions, faces };
+    let mut input = FrameInput { pins: pins(&surface, [0, 1]), ..input.clone() };
+    input.cloths[0].damp = damp;
+    let lists = ClothLists { damp: true, ..LINKS };
+    let mut solver = Solver::<f32>::new(one_cloth(surface, lists), 1);
+    for _ in 0..24 {
+        solver.step(&input, &mut ());
+    }
+    let end = solver.point(CLOTH, 2);
+    (-end.y).atan2(end.z).to_degrees()
+}
+
+/// The same by the equation of motion, θ'' = g cos θ / h - 2 (24 damp) θ', in steps of 10 µs.
+fn exact_fall_of_a_triangle(damp: f64) -> f64 {
+    let (mut angle, mut rate, step) = (0.0f64, 0.0, 1e-5);
+    for _ in 0..100_000 {
+        rate += step * 9.81 * angle.cos() / 0.75f64.sqrt();
+        rate /= 1.0 + step * 2.0 * 24.0 * damp;
+        angle += step * rate;
+    }
+    angle.to_degrees()
+}
+
+#[test]
+fn damp_slows_a_triangle_as_its_rate_says_at_any_number_of_substeps() {
+    for (damp, evaluations, within) in
+        [(0.2, 48.0, 0.01), (1.0, 48.0, 0.05), (8.0, 48.0, 0.2), (8.0, 192.0, 0.06)]
+    {
+        let exact = exact_fall_of_a_triangle(damp);
+        for substeps in [1, 3, 12] {
+            let found = damped_fall_of_a_triangle(damp, &frame(substeps, physical(evaluations)));
+            assert!((found / exact - 1.0).abs() < within, "{damp} at {substeps}: {found} for {exact}");
+        }
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Forces and damping along links, once per substep, on velocities; and drag, in each time step.
+//! Forces along links, once per substep, and damping, on velocities; and drag, in each time step.
 //!
 //! All act on both ends of a link, equal and opposite, so they keep momentum. `force` is a relative acceleration of the
 //! two ends, which does not depend on their masses. `damp` takes from the relative velocity along the link, `motionDrag`
@@ -6,12 +6,13 @@
 
 use nalgebra::Vector3;
 
+use crate::constraints::damp::DampTimes;
 use crate::contact::collider::ColliderState;
 use crate::input::frame::{COUNT_PERIOD, FrameInput};
 use crate::input::links::Link;
 use crate::math::Real;
 use crate::model::Model;
-use crate::schedule::PassTime;
+use crate::schedule::{PassTime, Schedule};
 use crate::state::State;
 
 use super::ends::{Ends, Prescribed, vector};
@@ -40,17 +41,19 @@ pub fn apply_link_forces<R: Real>(
     }
 }
 
-/// Damps links in a substep that ends at a time.
+/// Damps the links that are due at the end of a time step of the schedule, counted from the start of the frame.
 pub fn damp_links<R: Real>(
     links: &Links<R>,
     (model, colliders): (&Model<R>, &[ColliderState]),
     state: &mut State<R>,
     frame: &FrameInput,
-    PassTime { at: time, length }: PassTime,
+    (schedule, step): (&Schedule<R>, u32),
 ) {
+    let time = schedule.span(step).to;
     for (own, settings) in links.constraints.iter().zip(&frame.constraints) {
-        let rate = settings.damp.max(0.0) * length / COUNT_PERIOD;
-        if rate <= 0.0 {
+        let times = DampTimes::new(settings.damp, schedule, frame.resistance);
+        let share = times.share(settings.damp);
+        if share <= 0.0 || !times.is_due(schedule, step) {
             continue;
         }
         let prescribed = Prescribed { colliders, frame: settings };
@@ -64,7 +67,7 @@ pub fn damp_links<R: Real>(
             let d = vector(link, &ends, state, prescribed, time);
             let along = d * (relative.dot(&d) / d.norm_squared().max(1e-30));
             let masses = ends.inverse_masses(&state.displacement);
-            ends.apply(&masses, &mut state.velocity, along * -(rate / (1.0 + rate) / mobility));
+            ends.apply(&masses, &mut state.velocity, along * -(share / mobility));
         }
     }
 }
