@@ -29,7 +29,7 @@ use crate::constraints::whole;
 use crate::contact::cloth::pass::{
     apply_cloth_adhesion, balance_joined_cloths, begin_cloth_contact, resolve_cloth_contacts,
 };
-use crate::contact::collider::frame_start::{begin_collider_contact, find_near_colliders};
+use crate::contact::collider::frame_start::{begin_after_jump, begin_collider_contact, find_near_colliders};
 use crate::contact::collider::pass::{apply_collider_adhesion, resolve_collider_contacts};
 use crate::contact::collider::start_gaps::record_start_gaps;
 use crate::contact::exclusion::update_pair_filter;
@@ -136,8 +136,10 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
     }
     record_start_gaps(&solver.model, &mut solver.state, &mut solver.contact, frame);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
-    for (collider, motion) in solver.contact.collider_states.iter_mut().zip(&frame.colliders) {
-        collider.begin_frame(&motion.start, &motion.end);
+    for (at, motion) in frame.colliders.iter().enumerate() {
+        if solver.contact.collider_states[at].begin_frame(&motion.start, &motion.end) {
+            begin_after_jump(&mut solver.contact, at);
+        }
     }
     find_near_colliders(&solver.model, &solver.state, &mut solver.contact, frame);
     let Solver { model, state, contact, links, .. } = solver;

@@ -80,3 +80,42 @@ fn what_begins_to_collide_inside_a_collider_leaves_it() {
         }
     }
 }
+
+#[test]
+fn what_enters_a_collider_after_it_has_rested_on_it_leaves_it() {
+    // It leaves the cube within 24 frames, rests on it, and is 0.1 m inside when it collides again.
+    let (rests_until, enters_until) = (30, 34);
+    let falls = |input: &mut FrameInput| input.gravity = Vec3::y() * -9.81;
+    let enters = |number: u32| (rests_until..enters_until).contains(&number);
+    let without_collisions = |input: &mut FrameInput, number: u32| {
+        falls(input);
+        input.colliders[0].collide = !enters(number);
+    };
+    let with_less_strength = |input: &mut FrameInput, number: u32| {
+        falls(input);
+        input.colliders[0].collide_strength = if enters(number) { 0.0 } else { 1.0 };
+    };
+    for is_sheet in [true, false] {
+        for change in [&without_collisions as &dyn Fn(&mut FrameInput, u32), &with_less_strength] {
+            let heights = [rests_until, enters_until, 80].map(|frames| lowest(is_sheet, frames, change));
+            assert!(heights[0] > 0.515, "{is_sheet}: {heights:?}");
+            assert!(heights[1] < 0.43, "{is_sheet}: {heights:?}");
+            assert!(heights[2] > 0.515, "{is_sheet}: {heights:?}");
+        }
+    }
+}
+
+#[test]
+fn what_a_collider_jumps_around_between_two_frames_leaves_it() {
+    for is_sheet in [true, false] {
+        let height = lowest(is_sheet, 80, |input, number| {
+            input.gravity = Vec3::y() * -9.81;
+            let up: Vec<Vec3> = cuboid(Vec3::repeat(-0.5), Vec3::repeat(0.5)).positions;
+            let up: Vec<Vec3> = up.into_iter().map(|place| place + Vec3::y() * 0.15).collect();
+            let jumps = number == 30;
+            input.colliders[0].start = if jumps { up.clone() } else { Vec::new() };
+            input.colliders[0].end = if jumps { up } else { Vec::new() };
+        });
+        assert!(height > 0.665, "{is_sheet}: {height}");
+    }
+}

@@ -28,6 +28,7 @@ pub fn begin_collider_contact<R: Real>(
     contact.candidate_intervals.fill(TimeInterval::EXPIRED);
     contact.bound_growth.fill(R::ZERO);
     let is_same = update_materials(contact, frame);
+    forget_where_contact_is_partial(contact);
     for (cloth, is_same) in is_same.into_iter().enumerate() {
         if !contact.has_collider_material(cloth) {
             let of_cloth = contact.lists_of(cloth);
@@ -40,6 +41,25 @@ pub fn begin_collider_contact<R: Real>(
             invalidate_cloth(model, contact, cloth);
         }
     }
+}
+
+/// Cloth may enter a collider while they do not collide, or in part: all of its points are tested again where they collide in
+/// full.
+fn forget_where_contact_is_partial<R: Real>(contact: &mut ContactSystem<R>) {
+    let ContactSystem { collider_contacts, collider_materials, .. } = contact;
+    for list in collider_contacts {
+        match &collider_materials[[list.cloth, list.collider]] {
+            None => list.depenetration.clear(),
+            Some(material) if !material.has_full_strength() => list.depenetration.begin_again(),
+            Some(_) => {}
+        }
+    }
+}
+
+/// Tests all points again of cloth that collides with a collider which has moved between two frames, while neither was solved.
+pub fn begin_after_jump<R: Real>(contact: &mut ContactSystem<R>, collider: usize) {
+    let lists = contact.collider_contacts.iter_mut().filter(|list| list.collider == collider);
+    lists.for_each(|list| list.depenetration.begin_again());
 }
 
 /// Rebases the contacts and interval bounds of a cloth on anchors that move to the points' positions.

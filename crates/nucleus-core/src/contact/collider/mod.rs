@@ -137,12 +137,14 @@ impl ColliderState {
     }
 
     /// Takes up a frame's motion. Without positions at the start, it starts as the frame before ended; without
-    /// any at the end, it is at rest.
-    pub fn begin_frame(&mut self, start: &[Vector3<f64>], end: &[Vector3<f64>]) {
+    /// any at the end, it is at rest. Returns whether it starts elsewhere than the frame before ended.
+    pub fn begin_frame(&mut self, start: &[Vector3<f64>], end: &[Vector3<f64>]) -> bool {
         self.now = 0.0;
+        let mut has_jumped = false;
         if self.moves || !start.is_empty() || !end.is_empty() {
             std::mem::swap(&mut self.start, &mut self.end);
             if !start.is_empty() {
+                has_jumped = self.start != start;
                 self.start.clone_from_slice(start);
             }
             let next = if end.is_empty() { &self.start } else { end };
@@ -156,6 +158,7 @@ impl ColliderState {
             self.corners = [corners(&self.start), corners(&self.end)];
             self.turning = if self.moves { Turning::of(self.ends()) } else { None };
         }
+        has_jumped
     }
 
     /// Its points at the start and at the end of the frame, in metres.
