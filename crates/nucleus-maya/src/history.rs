@@ -105,7 +105,9 @@ impl Evaluator<'_> {
         if kind == "mesh" {
             return self.shape(id, frame, depth + 1, history);
         }
-        if let Some(primitive) = primitives::primitive(scene, id, &mut history.budget) {
+        let number = |names: &[&str], default| self.number_or(id, names, frame, default);
+        if let Some(primitive) = primitives::primitive(scene, id, &number, &mut history.budget) {
+            self.note_driven(id, frame, &primitives::is_length, history);
             return primitive;
         }
         if matches!(kind, "polyUnite" | "polyBoolOp" | "polyCBoolOp") {
@@ -130,6 +132,9 @@ impl Evaluator<'_> {
             let input = |plug, history: &mut History| self.made_by(plug, frame, depth + 1, history);
             return deform::deformed(self, id, frame, mesh, &input, history);
         }
+        if !operators::is_passed_over(kind) {
+            self.note_driven(id, frame, &|_| false, history);
+        }
         Ok(match operators::apply(scene, id, mesh, &mut history.budget)? {
             operators::Operation::Done(mesh) => mesh,
             operators::Operation::Unknown(mesh) => {
@@ -137,6 +142,20 @@ impl Evaluator<'_> {
                 mesh
             }
         })
+    }
+
+    /// Notes the driven numbers of a node of a history: the mesh moves with those that are read at each frame, and the others
+    /// are listed.
+    fn note_driven(&self, id: NodeId, frame: f64, is_read: &dyn Fn(&str) -> bool, history: &mut History) {
+        for wire in self.scene.arriving(id).filter(|wire| self.output(wire.from, frame).is_some()) {
+            let name = self.scene.path(wire.to).last().name;
+            if is_read(name) {
+                history.is_deformed = true;
+            } else {
+                let what = format!("{}.{name}", self.scene.name(id));
+                history.omitted.push((what, Cause::Driven(self.scene.kind(wire.from.node).to_owned())));
+            }
+        }
     }
 
     fn unite(&self, id: NodeId, frame: f64, depth: usize, history: &mut History) -> Result<Poly, String> {

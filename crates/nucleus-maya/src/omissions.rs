@@ -44,6 +44,10 @@ pub enum Cause {
     NoValueFile(String),
     /// An attribute whose value does not fit, and why.
     Value(String),
+    /// A value outside the range of an attribute, and which one takes its place.
+    Range(String),
+    /// Keys on an attribute that is read once, at the start.
+    Keys,
     /// Attributes that the simulation has no use for.
     Unused(String),
     /// Attributes that are in no table.
@@ -97,9 +101,12 @@ impl Cause {
             Self::NoValueFile(file) => {
                 format!("`{file}` is neither beside the Maya scene nor beside the new one")
             }
-            Self::Value(why) | Self::Component(why) | Self::Approximate(why) | Self::Motion(why) => {
-                why.clone()
-            }
+            Self::Value(why)
+            | Self::Range(why)
+            | Self::Component(why)
+            | Self::Approximate(why)
+            | Self::Motion(why) => why.clone(),
+            Self::Keys => "it is animated, but here it is read once, at the start".to_owned(),
             Self::Unused(names) => format!("the simulation has no use for {names}"),
             Self::Unknown(names) => format!("these attributes are unknown: {names}"),
             Self::ParticleExpression => "Maya's expressions of particles are not run".to_owned(),
@@ -138,6 +145,8 @@ impl Cause {
             Self::NoMeshFile(_) => "the mesh stands still, with its points at the first frame",
             Self::NoValueFile(_) => "the scene is refused until the file is there",
             Self::Value(_) => "the attribute keeps its default, or the nearest valid value",
+            Self::Range(_) => "the nearest valid value takes its place",
+            Self::Keys => "it keeps its value at the first frame",
             Self::Driven(_) | Self::Expression(_) => "it keeps the value stored in the file",
             Self::Approximate(_) => "small differences",
             Self::Motion(_) => "it stands still; import its file into Maya for the motion",

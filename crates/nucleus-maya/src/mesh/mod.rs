@@ -38,5 +38,6 @@ pub(crate) type InputMesh<'a> = dyn Fn(PlugRef, &mut History) -> Result<Poly, St
 
 /// Whether a creation node makes a Nucleus primitive, along the same axis unless that does not matter.
 pub(crate) fn is_own_primitive(scene: &MayaScene, id: NodeId, any_axis: bool) -> bool {
-    own_primitive(scene, id).is_some() && (any_axis || primitives::is_upright(scene, id))
+    let stored = |names: &[&str], default| scene.stored_or(id, names, default);
+    own_primitive(scene, id, &stored).is_some() && (any_axis || primitives::is_upright(scene, id))
 }

@@ -60,6 +60,11 @@ pub(crate) enum Operation {
     Unknown(Poly),
 }
 
+/// Whether an operator moves no point.
+pub(crate) fn is_passed_over(kind: &str) -> bool {
+    PASSED_OVER.contains(&kind)
+}
+
 /// Applies the operator of a history node to its input.
 ///
 /// # Errors

@@ -29,7 +29,7 @@ pub struct Built {
     pub mesh: Poly,
     /// Nodes that were passed over, and why.
     pub omitted: Vec<(String, Cause)>,
-    /// Whether a deformer acts on it, so that it may change from frame to frame.
+    /// Whether a deformer or a driven number acts on it, so that it may change from frame to frame.
     pub is_deformed: bool,
 }
 

@@ -16,10 +16,12 @@ use super::poly::Poly;
 const AXIS: Vector3 =
     Vector3 { whole: &["ax", "axis"], parts: [&["axx", "axisX"], &["axy", "axisY"], &["axz", "axisZ"]] };
 
+/// A number of a creation node at some frame, by its names, or a default.
+pub(crate) type Number<'a> = dyn Fn(&[&str], f64) -> f64 + 'a;
+
 /// The Nucleus primitive that a creation node makes, if it is one.
-pub(crate) fn own_primitive(scene: &MayaScene, id: NodeId) -> Option<Primitive> {
-    let length =
-        |names: &[&str], default| scene.stored_or(id, names, default) * scene.units_of(id).centimetres;
+pub(crate) fn own_primitive(scene: &MayaScene, id: NodeId, number: &Number) -> Option<Primitive> {
+    let length = |names: &[&str], default| number(names, default) * scene.units_of(id).centimetres;
     let count = |names: &[&str], default| scene.count_or(id, names, default);
     let [width, height] = [&["w", "width"], &["h", "height"]];
     // Older versions have longer short names of subdivisions.
@@ -49,20 +51,32 @@ pub(crate) fn own_primitive(scene: &MayaScene, id: NodeId) -> Option<Primitive> 
     })
 }
 
+/// Whether a creation node makes a mesh of other points where this number of it changes: not a count.
+pub(crate) fn is_length(name: &str) -> bool {
+    const LENGTHS: [&str; 12] =
+        ["w", "width", "h", "height", "d", "depth", "r", "radius", "sr", "sectionRadius", "t", "thickness"];
+    LENGTHS.contains(&name)
+}
+
 /// Whether the primitive stands along y, as Nucleus primitives do.
 pub(crate) fn is_upright(scene: &MayaScene, id: NodeId) -> bool {
     let [x, y, z] = scene.stored_vector(id, AXIS, [0.0, 1.0, 0.0]);
     x.abs() < 1e-9 && z.abs() < 1e-9 && y > 0.0
 }
 
-/// The mesh that a creation node makes; `None` if it is no creation node.
+/// The mesh that a creation node makes; `None` if it is no creation node. Its counts and its axis are as stored.
 ///
 /// # Errors
 /// When its parameters make no mesh, or one of more points than are left.
-pub(crate) fn primitive(scene: &MayaScene, id: NodeId, budget: &mut Budget) -> Option<Result<Poly, String>> {
-    let mut made = match own_primitive(scene, id) {
+pub(crate) fn primitive(
+    scene: &MayaScene,
+    id: NodeId,
+    number: &Number,
+    budget: &mut Budget,
+) -> Option<Result<Poly, String>> {
+    let mut made = match own_primitive(scene, id, number) {
         Some(own) => of_own(&own, budget),
-        None => other(scene, id, budget)?,
+        None => other(scene, id, number, budget)?,
     };
     if let (Ok(mesh), false) = (&mut made, is_upright(scene, id)) {
         turn(mesh, scene.stored_vector(id, AXIS, [0.0, 1.0, 0.0]));
@@ -82,9 +96,13 @@ fn of_own(own: &Primitive, budget: &mut Budget) -> Result<Poly, String> {
     Ok(mesh)
 }
 
-fn other(scene: &MayaScene, id: NodeId, budget: &mut Budget) -> Option<Result<Poly, String>> {
-    let length =
-        |names: &[&str], default| scene.stored_or(id, names, default) * scene.units_of(id).centimetres;
+fn other(
+    scene: &MayaScene,
+    id: NodeId,
+    number: &Number,
+    budget: &mut Budget,
+) -> Option<Result<Poly, String>> {
+    let length = |names: &[&str], default| number(names, default) * scene.units_of(id).centimetres;
     let count = |names: &[&str], default| scene.count_or(id, names, default);
     let radius = |default| length(&["r", "radius"], default);
     let height = length(&["h", "height"], 2.0);

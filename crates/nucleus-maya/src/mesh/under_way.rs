@@ -15,7 +15,7 @@ pub(crate) struct History {
     pub(crate) omitted: Vec<(String, Cause)>,
     /// The points that it may still make.
     pub(crate) budget: Budget,
-    /// Whether a deformer has moved its points.
+    /// Whether a deformer or a driven number moves its points.
     pub(crate) is_deformed: bool,
     /// The meshes of nodes that feed several inputs.
     pub(crate) known: HashMap<NodeId, Result<Poly, String>>,

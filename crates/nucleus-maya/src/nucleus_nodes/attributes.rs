@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use nucleus_graph::attributes::{
-    Attribute, Choice, ColorPoint, Effect, Kind, NodeType, Painting, RampPoint, Value, nucleus, particle,
-    transform,
+    Attribute, Choice, ColorPoint, Effect, Kind, NodeType, Painting, RampPoint, Value, n_base, n_particle,
+    n_rigid, nucleus, particle, transform,
 };
 use nucleus_graph::graph::{Channel, NodeId as OwnId, Setting};
 
@@ -166,9 +166,13 @@ impl Importer<'_> {
         if !self.is_own && !self.is_worth(to, row, &setting) {
             return;
         }
-        let what = || format!("{}.{}", self.graph.node(to).name(), row.name);
-        let fitted = if setting.fits(row) { Some(setting) } else { fitted(&setting, row) };
-        let what = what();
+        let what = format!("{}.{}", self.graph.node(to).name(), row.name);
+        let setting = self.at_start(&what, row, setting);
+        let is_passive = self.graph.node(to).node_type().is_a(&n_rigid::N_RIGID);
+        let fitted = match setting.fits(row) && (is_passive || !is_massless(&setting, row)) {
+            true => Some(setting),
+            false => self.fitted(&what, row, &setting),
+        };
         match fitted {
             Some(fitting) => {
                 if self.graph.set(to, row, fitting).is_err() {
@@ -179,6 +183,36 @@ impl Importer<'_> {
                 self.omissions.add(what, Cause::Value(format!("the attribute takes {}", row.kind.expects())))
             }
         }
+    }
+
+    /// A curve of an attribute that is read once as its value at the first frame, which is listed.
+    fn at_start(&mut self, what: &str, row: &'static Attribute, setting: Setting) -> Setting {
+        let start = self.frames[0] as f64;
+        let held = |channel: Channel| match channel {
+            Channel::Keyed(curve) => Channel::Fixed(curve.value_at(start)),
+            fixed => fixed,
+        };
+        match setting {
+            setting if row.keyable || !setting.changes() => setting,
+            Setting::Fixed(_) => setting,
+            Setting::Keyed(curve) => {
+                self.omissions.add(what, Cause::Keys);
+                of_channel(held(Channel::Keyed(curve)), row)
+            }
+            Setting::Parts(channels) => {
+                self.omissions.add(what, Cause::Keys);
+                Setting::Parts(channels.map(held))
+            }
+        }
+    }
+
+    /// The nearest valid setting. A number that changes is listed.
+    fn fitted(&mut self, what: &str, row: &'static Attribute, setting: &Setting) -> Option<Setting> {
+        let made = fitted(setting, row)?;
+        if let Some(change) = first_change(row, setting, &made) {
+            self.omissions.add(what, Cause::Range(change));
+        }
+        Some(made)
     }
 
     /// Whether a value says anything: Maya writes some attributes always, at their defaults, and data of its own.
@@ -375,12 +409,44 @@ pub(super) fn of_channel(channel: Channel, row: &Attribute) -> Setting {
     }
 }
 
+/// Whether a setting is a mass of 0, which Maya accepts and the solver does not.
+fn is_massless(setting: &Setting, row: &Attribute) -> bool {
+    is_mass(row) && *setting == Setting::Fixed(Value::Float(0.0))
+}
+
+fn is_mass(row: &Attribute) -> bool {
+    [&n_base::POINT_MASS.row, &n_particle::POINT_MASS.row].contains(&row)
+}
+
+/// The first number that differs between a setting and the valid one that takes its place. Rounding is as in Maya.
+fn first_change(row: &Attribute, from: &Setting, to: &Setting) -> Option<String> {
+    let numbers = |setting: &Setting| -> Vec<f64> {
+        let of = |channel: &Channel| match channel {
+            Channel::Fixed(x) => vec![*x],
+            Channel::Keyed(curve) => curve.keys().iter().map(|key| key.value).collect(),
+        };
+        match setting {
+            Setting::Fixed(Value::Float(x)) => vec![*x],
+            Setting::Fixed(Value::Int(x)) => vec![*x as f64],
+            Setting::Fixed(Value::Choice(choice)) => vec![f64::from(choice.0)],
+            Setting::Keyed(curve) => curve.keys().iter().map(|key| key.value).collect(),
+            Setting::Parts(channels) => channels.iter().flat_map(of).collect(),
+            Setting::Fixed(_) => Vec::new(),
+        }
+    };
+    let rounding = if row.kind == Kind::Float || matches!(row.kind, Kind::Vector(_)) { 0.0 } else { 0.5 };
+    let pairs = numbers(from).into_iter().zip(numbers(to));
+    let (old, new) = pairs.into_iter().find(|(old, new)| (old - new).abs() > rounding || old.is_nan())?;
+    Some(format!("{old} is not valid here: {new} takes its place"))
+}
+
 /// The nearest setting that fits a row.
 fn fitted(setting: &Setting, row: &Attribute) -> Option<Setting> {
     use nucleus_graph::animation::{Curve, Key};
     let near = |x: f64| {
         let x = row.range.clamp(if x.is_finite() { x } else { 0.0 });
         match row.kind {
+            _ if is_mass(row) && x <= 0.0 => row.range.soft.map_or(x, |(least, _)| least),
             Kind::Bool => f64::from(u8::from(x >= 0.5)),
             Kind::Int => x.round(),
             Kind::Choice(words) => {
@@ -405,8 +471,6 @@ fn fitted(setting: &Setting, row: &Attribute) -> Option<Setting> {
         Setting::Fixed(Value::Choice(choice)) => {
             Setting::Fixed(Value::Choice(Choice(near(f64::from(choice.0)) as i32)))
         }
-        // A curve of an attribute that is read once, at the start.
-        Setting::Keyed(keyed) if !row.keyable => of_channel(Channel::Fixed(near(keyed.keys()[0].value)), row),
         Setting::Keyed(keyed) => Setting::Keyed(curve(keyed)?),
         Setting::Parts(channels) => {
             let mut parts = [Channel::Fixed(0.0), Channel::Fixed(0.0), Channel::Fixed(0.0)];

@@ -41,7 +41,10 @@ impl Plan {
     pub(super) fn elements(&self, scene: &MayaScene) -> Option<Elements> {
         match self {
             Self::Primitive(source, _) => {
-                Some(Elements::of_surface(&crate::mesh::own_primitive(scene, *source)?.surface().ok()?))
+                let stored = |names: &[&str], default| scene.stored_or(*source, names, default);
+                Some(Elements::of_surface(
+                    &crate::mesh::own_primitive(scene, *source, &stored)?.surface().ok()?,
+                ))
             }
             Self::Embedded(mesh, _) => Some(Elements::of_poly(mesh)),
             Self::Built(built) => Some(Elements::of_poly(&built.mesh)),

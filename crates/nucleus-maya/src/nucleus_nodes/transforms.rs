@@ -2,7 +2,8 @@
 //!
 //! A point goes through `-sp S Sh sp spt -rp RA R rp rpt T` in Maya (for joints `S RA R JO IS T`), and through `S R T` in
 //! ours. Fixed turns and scales fold pivots into the translation. Where they are animated, the transform becomes a chain:
-//! scale of the segment, orientation, rotation, axis, shear, scale.
+//! scale of the segment, orientation, rotation, axis, shear, scale. Animated shear is a rotation, a scale and a rotation for
+//! each of its components.
 
 use nucleus_graph::animation::{Curve, Key};
 use nucleus_graph::attributes::{Attribute, Choice, Value, n_particle, transform};
@@ -57,13 +58,14 @@ struct Pivots {
     scale_translate: [f64; 3],
     axis: [f64; 3],
     orient: [f64; 3],
-    shear: [f64; 3],
+    shear: [Channel; 3],
 }
 
 impl Pivots {
     fn are_zero(&self) -> bool {
-        let Self { rotate, rotate_translate, scale, scale_translate, axis, orient, shear } = *self;
-        is_zero(&[rotate, rotate_translate, scale, scale_translate, axis, orient, shear])
+        let Self { rotate, rotate_translate, scale, scale_translate, axis, orient, shear } = self;
+        is_zero(&[*rotate, *rotate_translate, *scale, *scale_translate, *axis, *orient])
+            && *shear == fixed([0.0; 3])
     }
 
     /// Those of a joint, whose matrix has no pivots.
@@ -98,13 +100,13 @@ impl Importer<'_> {
         let parent = self.parent_with_offset(from, to);
         let pivots = self.pivots(from);
         let compensation = self.compensation(from);
+        self.refuse_animated_pivots(from);
         if pivots.are_zero() && compensation.is_none() {
             self.hang(to, parent);
             self.set_parts(from, to, &parts);
             return;
         }
-        self.refuse_animated_pivots(from);
-        if [&parts.rotate, &parts.scale].into_iter().chain(&compensation).all(is_fixed) {
+        if [&parts.rotate, &parts.scale, &pivots.shear].into_iter().chain(&compensation).all(is_fixed) {
             self.place_folded(from, to, parent, &parts);
             return;
         }
@@ -124,8 +126,9 @@ impl Importer<'_> {
         Some(self.set_matrix(chain, &offset, "offset2"))
     }
 
-    fn pivots(&self, from: NodeId) -> Pivots {
+    fn pivots(&mut self, from: NodeId) -> Pivots {
         let start = self.frames[0] as f64;
+        let shear = self.values.channels((from, names::SHEAR), (1.0, 0.0), self.frames, &mut self.omissions);
         let vector = |vector| self.values.lengths(from, vector, start);
         let is_joint = self.scene.kind(from) == "joint";
         Pivots {
@@ -135,7 +138,7 @@ impl Importer<'_> {
             scale_translate: vector(names::SCALE_PIVOT_TRANSLATE),
             axis: self.values.degrees(from, names::ROTATE_AXIS, start),
             orient: if is_joint { self.values.degrees(from, names::JOINT_ORIENT, start) } else { [0.0; 3] },
-            shear: self.values.vector(from, names::SHEAR, [0.0; 3], start),
+            shear,
         }
     }
 
@@ -169,13 +172,70 @@ impl Importer<'_> {
             self.set_channels(inner, &transform::ROTATE.row, fixed(pivots.axis), 0.0);
         }
         let mut between = add(add(pivots.scale, pivots.scale_translate), minus(pivots.rotate));
-        if !is_zero(&[pivots.shear]) {
+        if pivots.shear != fixed([0.0; 3]) {
             let sheared = self.add_transform(to, "shear");
             self.hang(sheared, Some(inner));
-            let matrix = Matrix::shearing(pivots.shear).then(&Matrix::translation(between));
-            (inner, between) = (self.set_matrix(sheared, &matrix, "shear2"), [0.0; 3]);
+            inner = self.set_shear(sheared, &pivots.shear, between);
+            between = [0.0; 3];
         }
         self.place_scaled(to, inner, between, parts.scale, pivots.scale);
+    }
+
+    /// Sets the shear of Maya, then a translation, on a transform and on those that it needs below; the innermost of them.
+    fn set_shear(&mut self, to: OwnId, shear: &[Channel; 3], translate: [f64; 3]) -> OwnId {
+        let values = [0, 1, 2].map(|k| match &shear[k] {
+            Channel::Fixed(x) => Some(*x),
+            Channel::Keyed(_) => None,
+        });
+        if let [Some(xy), Some(xz), Some(yz)] = values {
+            let matrix = Matrix::shearing([xy, xz, yz]).then(&Matrix::translation(translate));
+            return self.set_matrix(to, &matrix, "shear2");
+        }
+        self.set_channels(to, &transform::TRANSLATE.row, fixed(translate), 0.0);
+        // The shear is that along y by z, after those along x.
+        let components = [(&shear[2], [1, 2]), (&shear[1], [0, 2]), (&shear[0], [0, 1])];
+        let sheared = components.into_iter().filter(|(shear, _)| **shear != Channel::Fixed(0.0));
+        let mut at = to;
+        for (index, (shear, axes)) in sheared.enumerate() {
+            if index > 0 {
+                let next = self.add_transform(to, "next");
+                self.hang(next, Some(at));
+                at = next;
+            }
+            at = self.set_shear_of_axes(at, shear, axes);
+        }
+        at
+    }
+
+    /// A shear along the first of two axes by the second: a rotation, a scale and a rotation, whose angles and factors are
+    /// smooth functions of the shear. The inner rotation is that of a further transform, which is returned.
+    fn set_shear_of_axes(&mut self, outer: OwnId, shear: &Channel, [along, by]: [usize; 2]) -> OwnId {
+        let frames = self.frames;
+        let sampled = |value: &dyn Fn(f64) -> f64| {
+            let sample = |frame: i64| match shear {
+                Channel::Fixed(x) => Some(value(*x)),
+                Channel::Keyed(curve) => Some(value(curve.value_at(frame as f64))),
+            };
+            keys_at_every_frame(frames, sample).unwrap_or(Channel::Fixed(value(0.0)))
+        };
+        // [1 s; 0 1] = R(90° - a) diag(k, 1/k) R(-a) with k - 1/k = s and tan 2a = -2/s.
+        let angle = |s: f64| libm::atan2(2.0, -s) * 90.0 / std::f64::consts::PI;
+        let factor = |s: f64| (s + (s * s + 4.0).sqrt()) / 2.0;
+        // The axis of a rotation from the first axis to the second: z, -y or x.
+        let axis = 3 - along - by;
+        let sign = if axis == 1 { -1.0 } else { 1.0 };
+        let mut turn = fixed([0.0; 3]);
+        turn[axis] = sampled(&|s| sign * (90.0 - angle(s)));
+        let mut scale = fixed([1.0; 3]);
+        (scale[along], scale[by]) = (sampled(&factor), sampled(&|s| 1.0 / factor(s)));
+        self.set_channels(outer, &transform::ROTATE.row, turn, 0.0);
+        self.set_channels(outer, &transform::SCALE.row, scale, 1.0);
+        let inner = self.add_transform(outer, "back");
+        self.hang(inner, Some(outer));
+        let mut back = fixed([0.0; 3]);
+        back[axis] = sampled(&|s| -sign * angle(s));
+        self.set_channels(inner, &transform::ROTATE.row, back, 0.0);
+        inner
     }
 
     /// Adds a transform with one of its channels set, which takes over the translation; the parent of the next and what is left
@@ -399,7 +459,8 @@ impl Importer<'_> {
             names::SCALE_PIVOT,
             names::ROTATE_PIVOT_TRANSLATE,
             names::SCALE_PIVOT_TRANSLATE,
-            names::SHEAR,
+            names::ROTATE_AXIS,
+            names::JOINT_ORIENT,
         ];
         let is_driven = |vector: &crate::scene::Vector3| {
             let mut all = vector.parts.iter().chain(std::iter::once(&vector.whole));
@@ -407,7 +468,7 @@ impl Importer<'_> {
         };
         for vector in vectors.into_iter().filter(is_driven) {
             let what = format!("{}.{}", self.scene.name(from), vector.whole[1]);
-            let why = "curve or a node; pivots and shear stay as they are".to_owned();
+            let why = "curve or a node; pivots and orientations stay as they are".to_owned();
             self.omissions.add(what, Cause::Driven(why));
         }
     }

@@ -1,5 +1,6 @@
 //! Parts of Maya scenes, each written in its test, become the nodes and values that Maya computes.
 
+mod animated;
 mod constraints;
 mod deformers;
 mod events;
