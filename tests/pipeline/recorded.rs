@@ -94,6 +94,32 @@ fn a_cloth_is_solved_on_with_its_velocity_where_the_recording_ends() {
 }
 
 #[test]
+fn a_fall_goes_on_as_if_it_had_never_been_played() {
+    for (name, nucleus) in
+        [("physical", "nucleus("), ("classic", "nucleus(subSteps: 2, resistanceModel: classic, ")]
+    {
+        let folder = folder(&format!("falls_on_{name}"));
+        let scene = |fields: &str| tray_scene(fields).replace("nucleus(", nucleus);
+        let mut solved =
+            Simulation::<f64>::new(&compiled(&folder, &scene("playFromCache: false")).unwrap(), 1);
+        write(&folder, 1, &points(&solved, 0, 9));
+        for frame in 2..=12 {
+            solved.advance(&mut ());
+            if frame <= 6 {
+                write(&folder, frame, &points(&solved, 0, 9));
+            }
+        }
+        let program = compiled(&folder, &scene("playFromCache: keys([(1, true), (7, false)])")).unwrap();
+        let mut run = Simulation::<f64>::new(&program, 1);
+        (2..=12).for_each(|_| _ = run.advance(&mut ()));
+        // A velocity that is half a frame old would be 0.05 m off.
+        for (ours, expected) in points(&run, 0, 9).iter().zip(points(&solved, 0, 9)) {
+            assert!((ours - expected).norm() < 1e-5, "{name}: {ours:?}, {expected:?}");
+        }
+    }
+}
+
+#[test]
 fn particles_are_born_as_recorded_and_move_as_recorded() {
     let folder = folder("born");
     let at = |frame: i64| -> Vec<Vec3> {

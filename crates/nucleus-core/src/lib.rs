@@ -99,7 +99,7 @@ pub use input::fields::{Field, FieldKind, Noise, Reach, Volume, VolumeAxis, Volu
 pub use input::frame::{
     BendSolver, Bending, Birth, COUNT_PERIOD, ClothFrame, ColliderFrame, Elements, FieldSide, ForceField,
     FrameInput, GroundPlane, InputAttract, InputMesh, Liquid, Pin, Pressure, PushOut, ResistanceModel,
-    SelfCollision, Stiffness,
+    SelfCollision, StartVelocity, Stiffness,
 };
 pub use input::links::{
     ConstraintFrame, ExcludedSide, Exclusion, Falloff, Fold, Link, LinkForce, LinkKind, LinkMethod, LinkSide,

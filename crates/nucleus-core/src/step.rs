@@ -41,7 +41,7 @@ use crate::contact::restitution::apply_restitution;
 use crate::contact::safeguard::safeguard;
 use crate::contact::time_step::ContactCounters;
 use crate::fields::update_fields;
-use crate::input::frame::{ClothFrame, FrameInput};
+use crate::input::frame::{ClothFrame, FrameInput, StartVelocity};
 use crate::input::validation::{InvalidInput, sanitize};
 use crate::integrate::aerodynamics::update_normals;
 use crate::integrate::local_wind::{Objects, update_local_wind};
@@ -95,7 +95,7 @@ fn solve_frame<R: CompiledReal>(
     let schedule = Schedule::new(frame);
     let mut counters = ContactCounters::default();
     observer.enter(Stage::FrameStart);
-    begin_frame(solver, frame);
+    begin_frame(solver, frame, schedule.h);
     *counters.pairs_unresolved.get_mut() +=
         count_carried_points(&solver.contact, &solver.model.cloths, frame);
     if solve_substeps(solver, frame, &schedule, &mut counters, observer).is_break() {
@@ -108,8 +108,8 @@ fn solve_frame<R: CompiledReal>(
 }
 
 /// Moves the anchors to the current positions and reads the motion of pins, colliders and the ground plane: animation
-/// is evaluated once per frame and interpolated inside it (§2.4).
-fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
+/// is evaluated once per frame and interpolated inside it (§2.4). `h` is the length of a time step in seconds.
+fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput, h: f64) {
     solver.contact.has_touched.iter_mut().for_each(|mark| *mark.get_mut() = false);
     begin_collider_contact(&solver.model, &solver.state, &mut solver.contact, frame);
     begin_cloth_contact(&solver.state, &mut solver.contact, frame);
@@ -127,6 +127,14 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput) {
         let is_moved_elsewhere = solver.state.pin(row, pin, frame.duration);
         if is_moved_elsewhere {
             solver.contact.invalidate_bounds(row as usize);
+        }
+    }
+    for &StartVelocity { cloth, point, velocity, acceleration } in &frame.velocities {
+        let cloth = &solver.model.cloths[cloth.index()];
+        if point.index() < cloth.points().len() {
+            // A time step moves points by their velocity at its end: over the step, that is the one at its middle.
+            let of_step = velocity - acceleration * (h / 2.0);
+            solver.state.set_free_velocity(cloth.place(point.index()), of_step);
         }
     }
     for (cloth, settings) in solver.model.cloths.iter().zip(&frame.cloths) {

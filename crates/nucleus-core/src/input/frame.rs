@@ -76,6 +76,8 @@ pub struct FrameInput {
     pub self_collision_iterations: f64,
     /// The pinned points of this frame; all other points move freely.
     pub pins: Vec<Pin>,
+    /// Velocities that free points start the frame with, in place of those that they have.
+    pub velocities: Vec<StartVelocity>,
     /// `windNoise`: gusts as a multiple of the wind's speed; 0 is a steady wind.
     pub wind_noise: f64,
     /// Input meshes that attract or drag a cloth, at most one per cloth.
@@ -111,6 +113,7 @@ impl Default for FrameInput {
             layer_range: 4.0,
             self_collision_iterations: 4.0,
             pins: Vec::new(),
+            velocities: Vec::new(),
             wind_noise: 0.0,
             input_meshes: Vec::new(),
             constraints: Vec::new(),
@@ -172,6 +175,19 @@ impl GroundPlane {
     pub const fn new(origin: Vector3<f64>, normal: Vector3<f64>) -> Self {
         Self { origin, normal, start: None, bounce: 0.0, friction: 0.0, stickiness: 0.0 }
     }
+}
+
+/// The velocity of a point at the start of a frame, from the motion before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StartVelocity {
+    /// The cloth the point belongs to.
+    pub cloth: ClothId,
+    /// The point, in the mesh's order.
+    pub point: PointId,
+    /// In m/s.
+    pub velocity: Vector3<f64>,
+    /// Its rate of change in the motion before, in m/s².
+    pub acceleration: Vector3<f64>,
 }
 
 /// A pinned point, which moves along a straight line during the frame (a transform constraint).

@@ -39,7 +39,7 @@ use fields::{are_valid_fields, sanitize_fields};
 use particles::{are_births, is_change, sanitize_particles};
 pub use sanitized::{InvalidInput, LastPositions, Sanitized};
 
-use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, InputMesh, Pin};
+use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, InputMesh, Pin, StartVelocity};
 use crate::input::{ClothId, ColliderId, PointId};
 
 /// The frame with every invalid value replaced, and what was replaced. A valid frame is not copied.
@@ -68,6 +68,9 @@ pub fn sanitize<'f>(frame: &'f FrameInput, last: &impl LastPositions) -> (Cow<'f
         sanitized.add(InvalidInput::Field(at));
     }
     sanitize_pins(&mut frame, last, &mut sanitized);
+    for of in frame.velocities.extract_if(.., |of| !is_velocity(of, last)) {
+        sanitized.add(InvalidInput::StartVelocity(of.cloth));
+    }
     for (at, constraint) in (0..).zip(&mut frame.constraints) {
         if sanitize_constraint(constraint, last) {
             sanitized.add(InvalidInput::Constraint(at));
@@ -106,12 +109,21 @@ fn is_valid(frame: &FrameInput, last: &impl LastPositions) -> bool {
         && !frame.cloths.iter().any(|cloth| sanitize_cloth(&mut cloth.clone()))
         && (0..).map(ColliderId).zip(&frame.colliders).all(is_valid_collider)
         && frame.pins.iter().all(|pin| exists(pin, last) && is_in_range(&pin.start) && is_in_range(&pin.end))
+        && frame.velocities.iter().all(|of| is_velocity(of, last))
         && (0..frame.input_meshes.len()).all(|at| is_valid_mesh(&frame.input_meshes, at, last))
         && frame.constraints.iter().all(|constraint| is_valid_constraint(constraint, last))
         && are_valid_fields(&frame.fields, last.objects()[0])
         && are_exclusions(&frame.exclusions, last)
         && are_births(&frame.births, last)
         && frame.particle_changes.iter().all(|change| is_change(change, last))
+}
+
+/// Whether a start velocity is finite, and that of a point that exists.
+fn is_velocity(of: &StartVelocity, last: &impl LastPositions) -> bool {
+    of.cloth.index() < last.objects()[0]
+        && of.point.index() < last.cloth_points(of.cloth)
+        && is_in_range(&of.velocity)
+        && is_in_range(&of.acceleration)
 }
 
 fn exists(pin: &Pin, last: &impl LastPositions) -> bool {
@@ -187,6 +199,7 @@ fn settings_of(frame: &FrameInput) -> FrameInput {
         cloths: Vec::new(),
         colliders: Vec::new(),
         pins: Vec::new(),
+        velocities: Vec::new(),
         input_meshes: Vec::new(),
         constraints: Vec::new(),
         exclusions: Vec::new(),

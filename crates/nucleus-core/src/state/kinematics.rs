@@ -1,6 +1,8 @@
 //! The start of a frame: anchors move to the current positions, pins take their motion, and rows read the new anchors.
 //! From here to the end of the frame no column grows.
 
+use nalgebra::Vector3;
+
 use crate::input::frame::{FrameInput, Pin};
 use crate::math::{Real, Row4};
 use crate::model::ClothModel;
@@ -41,6 +43,14 @@ impl<R: Real> State<R> {
         self.displacement[row].0[3] = R::ZERO;
         self.velocity[row] = Row4::new(((pin.end - pin.start) / duration).into(), R::ZERO);
         is_moved_elsewhere
+    }
+
+    /// Sets the velocity in m/s of a point that has no pin.
+    pub fn set_free_velocity(&mut self, row: u32, velocity: Vector3<f64>) {
+        let row = row as usize;
+        if self.displacement[row].0[3] > R::ZERO {
+            self.velocity[row] = Row4::new(velocity.into(), R::ZERO);
+        }
     }
 
     /// Holds a point that has no pin where it is.

@@ -94,6 +94,7 @@ impl EvaluationInterval<'_> {
             cloths: self.nucleus.cloths.iter().map(|cloth| self.active_frame(cloth)).collect(),
             self_collision_iterations: self.self_collision_iterations(),
             pins: self.locked_and_pinned(attachments, position),
+            velocities: self.velocities_after_playback(),
             wind_noise: to.get(nucleus, &nucleus::WIND_NOISE),
             input_meshes: self.input_meshes(),
             constraints: self.constraint_frames(&mut attachments.formed, position),

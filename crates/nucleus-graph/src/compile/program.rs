@@ -184,6 +184,7 @@ impl Program {
             InvalidInput::Collider(id) => InvalidInput::Collider(collider(id)),
             InvalidInput::Pin(id, point) => InvalidInput::Pin(cloth(id), point),
             InvalidInput::NoSuchPin(id, point) => InvalidInput::NoSuchPin(cloth(id), point),
+            InvalidInput::StartVelocity(id) => InvalidInput::StartVelocity(cloth(id)),
             InvalidInput::InputMesh(id) => InvalidInput::InputMesh(cloth(id)),
             InvalidInput::Birth(id) => InvalidInput::Birth(cloth(id)),
             InvalidInput::ParticleChange(id) => InvalidInput::ParticleChange(cloth(id)),

@@ -2,15 +2,15 @@
 //!
 //! A file for each frame holds the positions of all points in world space. Where the attribute is on, pins move the points
 //! from frame to frame: other objects collide with them and are moved by them, and nothing pushes them. Where it goes off,
-//! the object is solved on from there with its velocities.
+//! the object is solved on from there with the velocities of its last three samples, to second order.
 //!
 //! Particles are born at the frame in which a file has more of them; an empty file, or an OBJ object without vertices, has
 //! none. A file that has fewer is an error: positions alone do not tell which of them died.
 
 use nalgebra::Vector3;
-use nucleus_core::{Birth, ClothId, MAX_COORDINATE, Pin, PointId};
+use nucleus_core::{Birth, ClothId, MAX_COORDINATE, Pin, PointId, StartVelocity};
 
-use crate::attributes::n_base;
+use crate::attributes::{n_base, nucleus};
 use crate::graph::NodeId;
 use crate::memory;
 
@@ -164,6 +164,29 @@ impl EvaluationInterval<'_> {
                 pins.push(Pin { cloth, point, start, end });
             }
         }
+    }
+
+    /// The velocities of objects whose playback has ended with the interval before. The pins there leave the mean velocity of
+    /// that interval, which is half an interval old; the parabola through three samples has the one at its end.
+    pub(super) fn velocities_after_playback(&self) -> Vec<StartVelocity> {
+        let (from, length) = (self.from.frame(), self.to.frame() - self.from.frame());
+        let seconds = self.from.get(self.nucleus.node, &nucleus::TIME_SCALE) * length / self.fps;
+        let mut velocities = Vec::new();
+        if self.is_discontinuous || seconds <= 0.0 {
+            return velocities;
+        }
+        for (cloth, source) in (0..).map(ClothId).zip(&self.nucleus.cloths) {
+            let Some(recorded) = source.recorded.as_ref().filter(|_| !self.plays(source)) else { continue };
+            let samples = [0.0, 1.0, 2.0].map(|back| recorded.at(from - back * length));
+            let [Some(now), Some(last), Some(before)] = samples else { continue };
+            let known = now.iter().zip(last.iter()).zip(before.iter());
+            velocities.extend((0..).map(PointId).zip(known).map(|(point, ((now, last), before))| {
+                let acceleration = (now - last * 2.0 + before) / (seconds * seconds);
+                let velocity = (now - last) / seconds + acceleration * (seconds / 2.0);
+                StartVelocity { cloth, point, velocity, acceleration }
+            }));
+        }
+        velocities
     }
 
     /// Adds the particles of which a recording has more at the end of the interval than at its start.

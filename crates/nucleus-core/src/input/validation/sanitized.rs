@@ -28,6 +28,9 @@ pub enum InvalidInput {
     /// A pin of a cloth or a point that does not exist.
     #[error("there is no point {} of cloth {} to pin", .1.0, .0.0)]
     NoSuchPin(ClothId, PointId),
+    /// A velocity at the start of the frame, or its rate: not finite, or of a point that does not exist.
+    #[error("a start velocity of cloth {} is not finite, or there is no such point", .0.0)]
+    StartVelocity(ClothId),
     /// Positions of the input mesh of a cloth: not one per point, not finite, or given twice. It attracts nothing in this
     /// frame; of two meshes the first does.
     #[error("the input mesh of cloth {} has not one finite position per point, or there are two of them", .0.0)]

@@ -10,7 +10,8 @@ use nucleus_core::{
     ConstraintFrame, Elements, Falloff, Field, FieldKind, FieldSide, Fold, ForceField, FrameInput,
     InputAttract, InputMesh, InvalidInput, Link, LinkForce, LinkKind, LinkSide, Liquid, Mass, ModelBuilder,
     Noise, ParticleChange, Particles, PointField, PointId, Pressure, PushOut, Reach, ResistanceModel,
-    SelfCollision, Solver, StateView, Stiffness, Surface, Volume, VolumeAxis, VolumeShape, WindField,
+    SelfCollision, Solver, StartVelocity, StateView, Stiffness, Surface, Volume, VolumeAxis, VolumeShape,
+    WindField,
 };
 
 mod numbers;
@@ -233,6 +234,12 @@ fn input(builder: &ModelBuilder, resistance: ResistanceModel) -> FrameInput {
         cloths: cloths(),
         colliders: vec![collider],
         pins: pins(sheet, [3]),
+        velocities: vec![StartVelocity {
+            cloth: SHEET,
+            point: PointId(1),
+            velocity: Vec3::y(),
+            acceleration: Vec3::z(),
+        }],
         input_meshes: vec![InputMesh {
             cloth: SHEET,
             start: sheet.positions.clone(),

@@ -3,8 +3,8 @@
 use nucleus_core::{
     Bending, Birth, ClothFrame, ColliderFrame, ConstraintFrame, Falloff, Field, FieldKind, Fold, ForceField,
     FrameInput, GroundPlane, InputAttract, InputMesh, Link, LinkForce, LinkKind, LinkSide, Liquid, Noise,
-    ParticleChange, Pin, PointField, Pressure, PushOut, Reach, ResistanceModel, SelfCollision, Stiffness,
-    Volume, VolumeAxis, WindField,
+    ParticleChange, Pin, PointField, Pressure, PushOut, Reach, ResistanceModel, SelfCollision, StartVelocity,
+    Stiffness, Volume, VolumeAxis, WindField,
 };
 
 /// The numbers of an input, by name.
@@ -31,6 +31,7 @@ impl<'a> Numbers<'a> {
             layer_range,
             self_collision_iterations,
             pins,
+            velocities,
             wind_noise,
             input_meshes,
             constraints,
@@ -55,6 +56,9 @@ impl<'a> Numbers<'a> {
         colliders.iter_mut().for_each(|collider| self.collider(collider));
         for Pin { cloth: _, point: _, start, end } in pins {
             self.add("pin", [&mut start.x, &mut end.z]);
+        }
+        for StartVelocity { cloth: _, point: _, velocity, acceleration } in velocities {
+            self.add("start velocity", [&mut velocity.y, &mut acceleration.x]);
         }
         for InputMesh { cloth: _, start, end } in input_meshes {
             self.add("input mesh", [&mut start[1].x, &mut end[2].y]);
