@@ -1,6 +1,6 @@
 //! A run that is saved at any frame and resumed has the same bits as a run that never stopped.
 
-use nucleus_core::{Real, RestoreError, StepReport};
+use nucleus_core::{ContactState, Real, RestoreError, StepReport};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 use nucleus_tests::gallery::program_of;
@@ -10,15 +10,25 @@ struct Run {
     hashes: Vec<Vec<u64>>,
     reports: Vec<StepReport>,
     saved: Vec<Vec<u8>>,
+    /// What observers see of contact, from the start on.
+    contacts: Vec<Vec<Vec<ContactState>>>,
+}
+
+fn contacts<R: Real>(simulation: &Simulation<R>) -> Vec<Vec<ContactState>> {
+    let mut states = Vec::new();
+    simulation.state().contacts(&mut states);
+    states
 }
 
 /// Advances by `frames` frames.
 fn run<R: Real>(simulation: &mut Simulation<R>, frames: usize) -> Run {
-    let mut run = Run { hashes: Vec::new(), reports: Vec::new(), saved: vec![simulation.save()] };
+    let (saved, contacts_at_start) = (vec![simulation.save()], vec![contacts(simulation)]);
+    let mut run = Run { hashes: Vec::new(), reports: Vec::new(), saved, contacts: contacts_at_start };
     for _ in 0..frames {
         run.reports.push(simulation.advance(&mut ()).report);
         run.hashes.push(simulation.solvers().map(|solver| solver.state_hash()).collect());
         run.saved.push(simulation.save());
+        run.contacts.push(contacts(simulation));
     }
     run
 }
@@ -39,6 +49,10 @@ fn assert_resumes<R: Real>(name: &str, program: &Program, frames: usize, every: 
         let rest = run(&mut simulation, further);
         assert_eq!(rest.hashes, whole.hashes[stop..stop + further], "{name}, stopped after {stop} frames");
         assert!(rest.reports == whole.reports[stop..stop + further], "{name}: reports after {stop} frames");
+        assert!(
+            rest.contacts == whole.contacts[stop..=stop + further],
+            "{name}: contacts after {stop} frames"
+        );
         assert!(rest.saved[further] == whole.saved[stop + further], "{name}: saved after {stop} frames");
     }
     whole
@@ -80,6 +94,17 @@ fn cloth_in_contact_with_a_moving_collider_resumes_with_the_same_bits() {
         "r": nRigid(inputMesh: "b", friction: 0.2, collide: keys([(1, true), (21, false)]))"#;
     let run = assert_resumes_always("moving ball", nodes, 24);
     assert!(ever(&run, |report| report.contacts));
+}
+
+#[test]
+fn contacts_of_a_resumed_run_stay_while_the_nucleus_is_off() {
+    let nodes = r#""n": nucleus(enable: keys([(1, true), (8, false), (14, true)]), evaluations: 48),
+        "m": polyPlane(width: 1, height: 1, subdivisions: (4, 4), translateY: 0.05), "c": nCloth(inputMesh: "m", thickness: 0.01),
+        "bm": polyPlane(width: 5, height: 5, subdivisions: (4, 4)), "b": nRigid(inputMesh: "bm", thickness: 0.02)"#;
+    let run = assert_resumes_always("switched off", nodes, 15);
+    let touches =
+        |states: &Vec<Vec<ContactState>>| states[0].iter().any(|state| *state != ContactState::Free);
+    assert!(run.contacts[7..13].iter().all(touches), "the sheet lies on the plane");
 }
 
 /// A sheet that falls on its edge and folds on the floor.

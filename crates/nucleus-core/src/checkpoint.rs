@@ -22,6 +22,7 @@ use crate::contact::cloth::contacts::ClothContacts;
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::untangling::{Correction, Intersection};
 use crate::contact::collider::contacts::ColliderContacts;
+use crate::contact::contact_state::seen_contact_states;
 use crate::contact::material::ContactMaterial;
 use crate::contact::pair_table::PairTable;
 use crate::contact::system::ContactSystem;
@@ -31,13 +32,14 @@ use crate::math::Real;
 use crate::model::builder::ModelBuilder;
 use crate::model::objects::Cloth;
 use crate::model::{ClothModel, ColliderModel};
+use crate::output::ContactState;
 use crate::particles::population::Population;
 use crate::solver::Solver;
 use crate::state::kinematics::update_anchors;
 use crate::state::{Chamber, State, inverse_mass_of};
 
 /// Name and version of the layout; the version goes up with every change of the layout.
-const KIND: [u8; 8] = *b"solver18";
+const KIND: [u8; 8] = *b"solver19";
 
 /// The state of a solver as bytes; see [`Solver::save`].
 pub fn save<R: Real>(solver: &Solver<R>) -> Vec<u8> {
@@ -133,6 +135,7 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
         free_gap: _,
         free_tasks: _,
         row_states: _,
+        restored_states: _,
         interval_bounds,
         bounds_violated,
         collider_materials,
@@ -157,6 +160,8 @@ fn save_fields<R: Real>(solver: &Solver<R>, out: &mut Vec<u8>) {
     ground.save(out);
     pair_filter.save(out);
     links.save(out);
+    let states = seen_contact_states(&solver.model, state, contact);
+    states.into_iter().map(|state| state as u8).collect::<Vec<_>>().encode(out);
 }
 
 fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option<()> {
@@ -190,7 +195,11 @@ fn load_fields<R: Real>(solver: &mut Solver<R>, from: &mut Reader<'_>) -> Option
     contact.cloth_contacts.load(from)?;
     contact.ground.load(from)?;
     contact.pair_filter.load(from)?;
-    links.load(from)
+    links.load(from)?;
+    let states: Vec<u8> = Encode::decode(from)?;
+    (states.is_empty() || states.len() == state.anchor.len()).then_some(())?;
+    contact.restored_states = Some(states.into_iter().map(ContactState::from_byte).collect::<Option<_>>()?);
+    Some(())
 }
 
 /// The points that contact has displaced without velocity in the last time step, in order, and their motion in m/s: what

@@ -41,6 +41,14 @@ pub enum ContactState {
     Intersecting = 4,
 }
 
+impl ContactState {
+    /// The state of a number; `None` if no state has it.
+    pub(crate) fn from_byte(byte: u8) -> Option<Self> {
+        let all = [Self::Free, Self::Touching, Self::Compressed, Self::Depenetrating, Self::Intersecting];
+        all.get(usize::from(byte)).copied()
+    }
+}
+
 /// A particle of an object in which particles are born and die.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Particle {

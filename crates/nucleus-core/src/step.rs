@@ -111,6 +111,7 @@ fn solve_frame<R: CompiledReal>(
 /// is evaluated once per frame and interpolated inside it (§2.4). `h` is the length of a time step in seconds.
 fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput, h: f64) {
     solver.contact.has_touched.iter_mut().for_each(|mark| *mark.get_mut() = false);
+    solver.contact.restored_states = None;
     begin_collider_contact(&solver.model, &solver.state, &mut solver.contact, frame);
     begin_cloth_contact(&solver.state, &mut solver.contact, frame);
     find_free_objects(&solver.model, &mut solver.state, &mut solver.contact, &solver.links, frame);

@@ -60,8 +60,7 @@ pub fn list_contact_states<R: Real>(
 ) {
     out.resize_with(model.cloths.len(), Vec::new);
     out.iter_mut().for_each(Vec::clear);
-    let mut rows = Vec::new();
-    contact_states_of_rows(model, state, contact, COMPRESSED, &mut rows);
+    let rows = seen_contact_states(model, state, contact);
     if rows.is_empty() {
         return;
     }
@@ -69,6 +68,20 @@ pub fn list_contact_states<R: Real>(
         let first = model.points().start;
         out.extend(model.places().iter().map(|&place| rows[(first + place) as usize]));
     }
+}
+
+/// The contact state of each row of the solver, as observers see it; empty where the scene can have no contact.
+pub fn seen_contact_states<R: Real>(
+    model: &Model<R>,
+    state: &State<R>,
+    contact: &ContactSystem<R>,
+) -> Vec<ContactState> {
+    // A restored solver has no contacts to compute them from before its first frame.
+    contact.restored_states.clone().unwrap_or_else(|| {
+        let mut rows = Vec::new();
+        contact_states_of_rows(model, state, contact, COMPRESSED, &mut rows);
+        rows
+    })
 }
 
 /// Replaces `rows` by the contact state of each row of the solver, which is compressed below a ratio of its gap to its

@@ -85,6 +85,8 @@ pub struct ContactSystem<R: Real> {
     pub free_tasks: Vec<Mutex<NearPoints<R>>>,
     /// The contact state of each row, where particles have collision events.
     pub row_states: Vec<ContactState>,
+    /// The contact state of each row as a checkpoint holds it, until the next frame; `None` in a solver that was not restored.
+    pub restored_states: Option<Vec<ContactState>>,
 }
 
 impl<R: Real> ContactSystem<R> {
@@ -128,6 +130,7 @@ impl<R: Real> ContactSystem<R> {
             free_gap: f64::INFINITY,
             free_tasks: Vec::new(),
             row_states: Vec::new(),
+            restored_states: None,
         }
     }
 
