@@ -103,7 +103,7 @@ impl InitialState {
                 unknown.join(", ")
             );
         }
-        let reset = reset::lost_state(&scene.graph);
+        let reset = reset::lost_state(&scene.graph, scene.time.fps);
         if !reset.is_empty() {
             say!(
                 "warning: a cache holds positions and velocities alone, so these begin anew: {}",

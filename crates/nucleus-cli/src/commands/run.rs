@@ -38,7 +38,7 @@ pub struct Run {
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<FrameRange>,
     /// Initial state of all cloth: a frame of a cache, `drape.mcap@80`, or its last frame, `drape.mcap`. Positions and
-    /// velocities are taken over, and ages and numbers of particles; constraints, plasticity and gas begin anew.
+    /// velocities are taken over, and ages and numbers of particles; constraints, plasticity, gas and the phase of emitters begin anew.
     #[arg(long, value_name = "CACHE@FRAME")]
     from: Option<InitialState>,
     /// Threads to use; default: one per core. The result does not depend on it.

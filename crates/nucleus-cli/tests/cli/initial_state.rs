@@ -184,6 +184,42 @@ fn a_run_from_a_cache_names_the_state_that_begins_anew() {
 }
 
 #[test]
+fn the_phase_of_an_emitter_is_named_among_the_state_that_begins_anew() {
+    let folder = folder();
+    let said = |rate: u32| {
+        particles(
+            folder.path(),
+            &format!(r#""e": pointEmitter(target: "p", rate: {rate}), "p": nParticle()"#),
+        );
+        run(folder.path(), &["-o", "whole.mcap", "--force"]);
+        stderr(&run(folder.path(), &["--from", "whole.mcap", "--force", "-o", "rest.mcap"]))
+    };
+    let warned = said(37);
+    assert!(warned.contains("the time to the next birth from `e` counts from the start"), "{warned}");
+    // A whole number per frame: none is due within a frame.
+    assert!(!said(48).contains("begin anew"));
+}
+
+#[test]
+fn a_surface_that_can_tear_starts_from_its_own_cache() {
+    let folder = folder();
+    let text = r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {
+        "n": nucleus(), "m": polyPlane(width: 1, height: 1, subdivisions: (4, 4)),
+        "c": nCloth(inputMesh: "m", thickness: 0.005, selfCollide: false),
+        "q": dynamicConstraint(constraintType: tearableSurface, components: ["c"], glueStrength: 0.5)})"#;
+    fs::write(folder.path().join("drape.ron"), text).unwrap();
+    assert_eq!(run(folder.path(), &["--velocities", "-o", "whole.mcap"]).status.code(), Some(0));
+    let from = ["--velocities", "--from", "whole.mcap@5", "--frames", "5..9", "-o", "rest.mcap"];
+    let output = run(folder.path(), &from);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("broken links of `q` hold again"), "{}", stderr(&output));
+    let [whole, rest] =
+        ["whole.mcap", "rest.mcap"].map(|cache| [5, 9].map(|frame| state(folder.path(), cache, frame).0));
+    assert_eq!(rest[0].len(), 64);
+    assert!(farthest(&whole[0], &rest[0]) < 1e-6 && farthest(&whole[1], &rest[1]) < 1e-3);
+}
+
+#[test]
 fn velocities_of_a_cache_are_converted_to_the_time_of_the_nucleus() {
     let folder = folder();
     let text = r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {

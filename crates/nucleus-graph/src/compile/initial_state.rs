@@ -18,6 +18,7 @@ use crate::graph::{Graph, NodeId};
 use crate::memory::{Cost, Size};
 
 use super::compiler::Compiler;
+use super::constraints::split_mesh::Tearing;
 use super::emission::emitter_nodes;
 use super::geometry::placed_faces;
 use super::particle_ramps::is_event_target;
@@ -166,11 +167,22 @@ impl Compiler<'_> {
         if self.scene.graph.is_given(node, first) { first } else { second }
     }
 
-    /// The start state of a cloth; `None` after an error, which is reported.
-    pub(super) fn start_state(&mut self, cloth: NodeId, mesh: NodeId, points: usize) -> Option<Start> {
+    /// The start state of a cloth; `None` after an error, which is reported. Each list has one vector per point of the mesh, or
+    /// one per point of the mesh as it is split to tear.
+    pub(super) fn start_state(
+        &mut self,
+        cloth: NodeId,
+        mesh: NodeId,
+        points: usize,
+        tearing: Option<&Tearing>,
+    ) -> Option<Start> {
+        let split = points + tearing.map_or(0, |tearing| tearing.twins.len());
+        let count = |found: usize| if found == split { split } else { points };
         let positions = self.vectors(cloth, &n_base::START_POSITIONS);
-        let positions = self.of_each_point(cloth, mesh, points, &n_base::START_POSITIONS, positions);
-        let velocities = self.start_velocities(cloth, mesh, points, &n_base::START_VELOCITIES);
+        let found = count(positions.as_ref().map_or(0, Vec::len));
+        let positions = self.of_each_point(cloth, mesh, found, &n_base::START_POSITIONS, positions);
+        let found = count(self.vectors(cloth, &n_base::START_VELOCITIES).map_or(0, |all| all.len()));
+        let velocities = self.start_velocities(cloth, mesh, found, &n_base::START_VELOCITIES);
         Some(Start { positions: positions?, velocities: velocities? })
     }
 

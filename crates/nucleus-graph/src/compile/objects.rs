@@ -138,7 +138,7 @@ impl Compiler<'_> {
         tearing: Option<&Tearing>,
     ) -> Option<(CompiledMaps, Start, Option<RecordedPoints>)> {
         let maps = self.vertex_maps(id, mesh, points);
-        let start = self.start_state(id, mesh, points);
+        let start = self.start_state(id, mesh, points, tearing);
         let (mut maps, mut start) = (maps?, start?);
         let mut recorded = self.recorded(id, Some((mesh, points)))?;
         if let Some(positions) = recorded.as_ref().and_then(|recorded| recorded.at(self.start.frame())) {
@@ -146,8 +146,12 @@ impl Compiler<'_> {
         }
         if let Some(tearing) = tearing {
             maps.vertex_maps = tearing.maps(maps.vertex_maps, self.is_classic());
-            tearing.extend(&mut start.positions);
-            tearing.extend(&mut start.velocities);
+            for column in [&mut start.positions, &mut start.velocities] {
+                // A state of the split mesh has the twins already.
+                if column.len() == points {
+                    tearing.extend(column);
+                }
+            }
             recorded.iter_mut().for_each(|recorded| recorded.extend(tearing));
         }
         Some((maps, start, recorded))
