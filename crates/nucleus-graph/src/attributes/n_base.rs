@@ -116,7 +116,7 @@ node_table! {
         FIELD_DISTANCE: f64 = float("fieldDistance", "fdi", 1.0).min(0.0).soft(0.0, 100.0).solved("nucleus_core::contact::force_field");
         /// Falloff of the surface field, from the surface (0) to its range (1).
         FIELD_SCALE: Cow<'static, [RampPoint]> = ramp("fieldScale", "fsc", FALLING).solved("nucleus_core::contact::force_field");
-        /// A force field around each point. Strength and range are in m/s² and scene units, or both are multiplied by the thickness.
+        /// A force field around each point. Strength and range are in m/s² and scene units, or the strength is multiplied by the thickness in metres, and the range by that in scene units.
         POINT_FORCE_FIELD: Choice = choice("pointForceField", "pff", 0, &[(0, "Off"), (1, "ThicknessRelative"), (2, "Worldspace")]).solved("nucleus_core::contact::point_field");
         /// Strength of the point field on other objects; 1 is an acceleration of 10 m/s². Above 0 it repels. The fields of several points add up.
         POINT_FIELD_MAGNITUDE: f64 = float("pointFieldMagnitude", "pfma", 1.0).soft(-10.0, 10.0).solved("nucleus_core::contact::point_field");

@@ -38,12 +38,13 @@ impl EvaluationInterval<'_> {
             _ => return None,
         };
         let units = self.nucleus.units;
-        let scale = if relative { thickness * units.per_metre() } else { 1.0 };
+        // In metres, an acceleration does not depend on the unit of the scene. A distance in scene units is converted.
+        let [strength, range] = if relative { [thickness, thickness * units.per_metre()] } else { [1.0; 2] };
         Some(PointField {
-            magnitude: number(&n_base::POINT_FIELD_MAGNITUDE) * FIELD_ACCELERATION * scale,
-            self_attract: number(&n_base::SELF_ATTRACT) * FIELD_ACCELERATION * scale,
+            magnitude: number(&n_base::POINT_FIELD_MAGNITUDE) * FIELD_ACCELERATION * strength,
+            self_attract: number(&n_base::SELF_ATTRACT) * FIELD_ACCELERATION * strength,
             radius: thickness,
-            distance: units.length(number(&n_base::POINT_FIELD_DISTANCE) * scale),
+            distance: units.length(number(&n_base::POINT_FIELD_DISTANCE) * range),
             falloff: Ramp::new(&self.to.get(node, &n_base::POINT_FIELD_DROPOFF)).samples(),
         })
     }

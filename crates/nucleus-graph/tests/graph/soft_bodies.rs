@@ -69,7 +69,15 @@ fn the_air_and_the_fields_of_objects_are_in_metres() {
     let relative = fields.replace("worldspace", "thicknessRelative");
     let input = program(&sheet("spaceScale: 0.01", &relative)).first_input();
     let field = input.cloths[0].point_field.expect("it is on");
-    assert_eq!((field.magnitude, field.distance), (10.0, 0.02), "times the thickness in scene units");
+    assert_eq!(
+        (field.magnitude, field.distance),
+        (0.1, 0.02),
+        "times the thickness of 5 mm, and of 0.5 units"
+    );
+    let metres = relative.replace("thickness: 0.5", "thickness: 0.005");
+    let same = program(&sheet("", &metres)).first_input().cloths[0].point_field.expect("it is on");
+    assert_eq!((same.magnitude, same.self_attract), (field.magnitude, field.self_attract));
+    assert_eq!((same.radius, same.distance), (field.radius, field.distance));
 }
 
 // EVIDENCE: N1.3-4  lift does not depend on the scene unit, and a switch keeps the original's, which does
