@@ -83,6 +83,14 @@ impl Affine {
         self.linear * point + self.offset
     }
 
+    /// The placement at a share of the way to another, on which every point moves along a straight line.
+    pub fn toward(&self, other: &Self, share: f64) -> Self {
+        Self {
+            linear: self.linear + (other.linear - self.linear) * share,
+            offset: self.offset + (other.offset - self.offset) * share,
+        }
+    }
+
     /// Whether it makes a mirror image, as an odd number of negative scales does.
     pub fn mirrors(&self) -> bool {
         self.linear.determinant() < 0.0

@@ -75,7 +75,8 @@ impl CurveShape {
         let share = random.next();
         let at = |points: &[Vec3]| points[segment] + (points[segment + 1] - points[segment]) * share;
         let [from, to] = [at(&self.ends[0]), at(&self.ends[1])];
-        let along = (self.ends[1][segment + 1] - self.ends[1][segment]).try_normalize(0.0)?;
+        let [before, along] = self.ends.each_ref().map(|points| points[segment + 1] - points[segment]);
+        let along = (before + (along - before) * time).try_normalize(0.0)?;
         let (sin, cos) = sin_cos_degrees(random.between(0.0, 360.0));
         let across = turned_to(along, Vec3::new(cos, sin, 0.0));
         let velocity = (across * self.normal + along * self.tangent) * self.speed.draw(random);

@@ -36,6 +36,8 @@ impl Launch {
         seconds: f64,
         random: &mut Random,
     ) -> Option<Start> {
+        // Where the emitter is at the birth: a direction turns within an interval as places move.
+        let placed = placements[0].toward(&placements[1], time);
         let ends = |local: Vec3| placements.map(|placement| placement.point(local));
         let at = |[from, to]: [Vec3; 2], offset: Vec3, velocity: Vec3| Start {
             position: from + (to - from) * time + offset,
@@ -44,14 +46,14 @@ impl Launch {
         };
         match self {
             Self::Point(shape) => {
-                let direction = shape.direction(random, &placements[1]);
+                let direction = shape.direction(random, &placed);
                 let distance = random.between(shape.distance[0], shape.distance[1]);
                 let velocity = direction * shape.speed.draw(random);
                 Some(at(ends(Vec3::zeros()), direction * distance, velocity))
             }
             Self::Volume(shape) => {
                 let place = shape.place(random);
-                let velocity = shape.velocity(place, random, &placements[1]);
+                let velocity = shape.velocity(place, random, &placed);
                 Some(at(ends(place + shape.offset), Vec3::zeros(), velocity))
             }
             Self::Surface(patches) => patches.draw(time, seconds, random),

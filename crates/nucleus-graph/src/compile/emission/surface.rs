@@ -163,7 +163,11 @@ impl Patches {
             corners.iter().zip(weights).map(|(&corner, weight)| points[corner as usize] * weight).sum()
         };
         let [from, to] = [at(&self.ends[0]), at(&self.ends[1])];
-        let normal = doubled_area(&self.ends[1], corners).try_normalize(0.0).unwrap_or_default();
+        let placed = corners.map(|corner| {
+            let [from, to] = self.ends.each_ref().map(|points| points[corner as usize]);
+            from + (to - from) * time
+        });
+        let normal = doubled_area(&placed, [0, 1, 2]).try_normalize(0.0).unwrap_or_default();
         let around = turned_to(normal, flat(random));
         let own = (normal * self.normal + around * self.tangent) * self.speed.draw(random);
         let distance = random.between(self.distance[0], self.distance[1]);
