@@ -51,7 +51,7 @@ pub mod field {
         /// Attributes shared by all fields: magnitude, range and volume.
         FIELD = "field", inherits Some(&DYN_BASE), hides [];
         "Field" {
-            /// Strength of the field: a force per point; in the physical model, of cloth per unit of area.
+            /// Strength of the field: a force per point; in the physical model, of cloth per unit of area. Of an airField, the speed of the air; of a newtonField, an acceleration; of a dragField, a resistance.
             MAGNITUDE: f64 = float("magnitude", "mag", 1.0).solved("nucleus_core::fields::reach");
             /// Falloff with distance; 0 is none.
             ATTENUATION: f64 = float("attenuation", "att", 0.0).solved("nucleus_core::fields::reach");
@@ -187,7 +187,7 @@ pub mod air_field {
         "Field" {
             /// Direction of the air.
             DIRECTION: [f64; 3] = vector("direction", "d", [0.0, 0.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::air");
-            /// Speed of the air.
+            /// Rate at which the air takes points along: the share of the difference from its velocity that disappears in 1/24 s. At 0 it does nothing, and from 1 on points move with the air at once. The speed of the air is `magnitude`.
             SPEED: f64 = float("speed", "spd", 0.0).solved("nucleus_core::fields::air");
             /// Share of the field's velocity that is added.
             INHERIT_VELOCITY: f64 = float("inheritVelocity", "iv", 0.0).solved("nucleus_core::fields::air");
@@ -243,15 +243,15 @@ pub mod volume_axis_field {
         "Field" {
             /// Strongest at the edge of the volume, or at the largest distance, instead of the centre or the axis.
             INVERT_ATTENUATION: bool = toggle("invertAttenuation", "ia", false).solved("nucleus_graph::compile::fields");
-            /// Speed away from the centre of a cube or a sphere, and without a volume.
+            /// Force away from the centre of a cube or a sphere, and without a volume, as a multiple of `magnitude`.
             AWAY_FROM_CENTER: f64 = float("awayFromCenter", "afc", 1.0).solved("nucleus_core::fields::volume_axis");
-            /// Speed away from the axis of a cylinder, a cone or a torus, and without a volume.
+            /// Force away from the axis of a cylinder, a cone or a torus, and without a volume, as a multiple of `magnitude`.
             AWAY_FROM_AXIS: f64 = float("awayFromAxis", "afa", 1.0).solved("nucleus_core::fields::volume_axis");
-            /// Speed along the axis.
+            /// Force along the axis, as a multiple of `magnitude`.
             ALONG_AXIS: f64 = float("alongAxis", "alx", 0.0).solved("nucleus_core::fields::volume_axis");
-            /// Speed around the axis.
+            /// Force around the axis, as a multiple of `magnitude`.
             AROUND_AXIS: f64 = float("aroundAxis", "arx", 0.0).solved("nucleus_core::fields::volume_axis");
-            /// Speed along `direction`.
+            /// Force along `direction`, as a multiple of `magnitude`.
             DIRECTIONAL_SPEED: f64 = float("directionalSpeed", "drs", 0.0).solved("nucleus_core::fields::volume_axis");
             /// Direction of `directionalSpeed`.
             DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]).solved("nucleus_core::fields::volume_axis");

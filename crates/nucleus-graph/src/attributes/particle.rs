@@ -20,7 +20,7 @@ node_table! {
     "General" {
         /// Number of particles.
         COUNT: i64 = int("count", "cnt", 0).output().elsewhere("an output that only Maya's expressions and shaders read");
-        /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh, and particles stay where they are, and none are emitted. Other cloth collides with both.
+        /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh. Particles that are not included stay where they are, lose their velocity, age and die, and none are emitted. Other cloth collides with both. `enable` of the nucleus stops time, and keeps velocities and ages.
         IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::input_mesh");
     }
     "Time Attributes" {
