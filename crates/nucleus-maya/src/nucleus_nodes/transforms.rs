@@ -75,6 +75,14 @@ impl Pivots {
     }
 }
 
+/// A channel, as a fixed one if all its keys are zero: no tangent has a slope of its own.
+fn without_zero_keys(channel: Channel) -> Channel {
+    match channel {
+        Channel::Keyed(curve) if curve.keys().iter().all(|key| key.value == 0.0) => Channel::Fixed(0.0),
+        other => other,
+    }
+}
+
 fn is_zero(all: &[[f64; 3]]) -> bool {
     all.iter().flatten().all(|x| *x == 0.0)
 }
@@ -138,7 +146,7 @@ impl Importer<'_> {
             scale_translate: vector(names::SCALE_PIVOT_TRANSLATE),
             axis: self.values.degrees(from, names::ROTATE_AXIS, start),
             orient: if is_joint { self.values.degrees(from, names::JOINT_ORIENT, start) } else { [0.0; 3] },
-            shear,
+            shear: shear.map(without_zero_keys),
         }
     }
 

@@ -36,7 +36,9 @@ fn animated_shear_moves_a_mesh_as_in_maya() {
 
 #[test]
 fn animated_shear_that_starts_at_zero_is_carried_over() {
-    let read = read(&format!("{}{}", mesh("m"), curve("xy", [0.0, 1.0], "m.shxy")));
+    let keys = curve("xy", [0.0, 1.0], "m.shxy") + &curve("yz", [0.0, 0.0], "m.shyz");
+    let read = read(&format!("{}{keys}", mesh("m")));
+    assert_eq!(read.text().matches("transform(").count(), 3, "none for keys of zero: {}", read.text());
     near(read.placed("m", [0.0, 2.0, 0.0], 1.0), [0.0, 2.0, 0.0]);
     near(read.placed("m", [0.0, 2.0, 0.0], 11.0), [2.0, 2.0, 0.0]);
     // Between two frames, the parts of the shear are interpolated.
