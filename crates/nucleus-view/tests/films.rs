@@ -240,7 +240,7 @@ fn the_picture_of_the_synthetic_run_is_the_inspected_one() {
     );
 }
 
-const GOLDEN: u64 = 0x5456_a9d5_72b7_58cf;
+const GOLDEN: u64 = 0x86d2_e5db_f90b_21c1;
 
 #[test]
 fn a_mesh_that_changes_is_drawn_with_the_topology_of_each_frame() {
