@@ -6,7 +6,8 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use crate::candidate_interval::CandidateIntervals;
-use crate::collision_mesh::{CollisionFilter, CollisionMesh, EdgeId, FaceId};
+use crate::collision_filter::CollisionFilter;
+use crate::collision_mesh::{CollisionMesh, EdgeId, FaceId};
 use crate::finding::{Described, Finding, FindingKind, StateIndex};
 use crate::ground::{Ground, Plane};
 use crate::initial_intersections::InitialIntersections;

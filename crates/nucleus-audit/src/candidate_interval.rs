@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 
 use crate::bvh::{Aabb, Bvh};
 use crate::ccd::separated_throughout;
-use crate::collision_mesh::{CollisionFilter, CollisionMesh, EdgeId, FaceId};
+use crate::collision_filter::CollisionFilter;
+use crate::collision_mesh::{CollisionMesh, EdgeId, FaceId};
 use crate::motion::Motion;
 use crate::pair::{Collision, Pair};
 use crate::parallel::parallel_chunks;

@@ -5,7 +5,8 @@
 
 use nalgebra::Vector3;
 
-use crate::collision_mesh::{CollisionFilter, CollisionMesh};
+use crate::collision_filter::CollisionFilter;
+use crate::collision_mesh::CollisionMesh;
 
 /// Tolerance below the plane, as a fraction of the largest coordinate of the body and of the plane's origin: 1e-6 m at
 /// one metre. It covers only the rounding of single-precision states.

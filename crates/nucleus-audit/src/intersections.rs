@@ -4,7 +4,8 @@ use nalgebra::{Vector2, Vector3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::bvh::{Aabb, Bvh};
-use crate::collision_mesh::{CollisionFilter, CollisionMesh, EdgeId, FaceId};
+use crate::collision_filter::CollisionFilter;
+use crate::collision_mesh::{CollisionMesh, EdgeId, FaceId};
 use crate::parallel::parallel_chunks;
 
 /// An edge that intersects a face in a state.

@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 
 use crate::bvh::Aabb;
 use crate::ccd::ccd;
-use crate::collision_mesh::{CollisionFilter, CollisionMesh};
+use crate::collision_filter::CollisionFilter;
+use crate::collision_mesh::CollisionMesh;
 use crate::pair::{CcdResult, Collision, Pair, PairKind};
 
 /// Linear motion of all points from one state to the next.

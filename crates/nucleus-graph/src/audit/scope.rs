@@ -8,9 +8,10 @@ use nucleus_core::{
     Pin, PointId,
 };
 
-use crate::attributes::{n_base, nucleus};
+use crate::attributes;
+use crate::attributes::n_base;
 use crate::compile::{NucleusProgram, Object, ObjectKind, Program, self_collides};
-use crate::graph::EvalContext;
+use crate::graph::{EvalContext, NodeId};
 
 /// The ground planes of all nuclei.
 #[derive(Debug, Default)]
@@ -226,9 +227,14 @@ pub(crate) fn collision_rules(
     let mut rules = CollisionFilter::default();
     let objects = program.objects();
     let moment = program.graph().at(frame as f64);
+    let settings: Vec<_> =
+        objects.iter().map(|object| CollisionSettings::of(program, object, &moment)).collect();
     for a in 0..objects.len() {
-        for b in a..objects.len() {
-            if !collide(program, a, b, &moment) {
+        if !settings[a].self_collides {
+            rules.ignore(a, a);
+        }
+        for b in a + 1..objects.len() {
+            if !settings[a].collides_with(&settings[b]) {
                 rules.ignore(a, b);
             }
         }
@@ -245,22 +251,46 @@ pub(crate) fn collision_rules(
     rules
 }
 
-/// Whether two objects collide, or one with itself. Objects of different nuclei never do.
-fn collide(program: &Program, a: usize, b: usize, moment: &EvalContext) -> bool {
-    let [kind_a, kind_b] = [a, b].map(|object| program.objects()[object].kind);
-    let [(node_a, nucleus_a), (node_b, nucleus_b)] = [kind_a, kind_b].map(|kind| program.node_of(kind));
-    if a == b {
-        return self_collides(moment, node_a);
+/// What decides at a frame which objects an object collides with.
+struct CollisionSettings {
+    kind: ObjectKind,
+    nucleus: NodeId,
+    self_collides: bool,
+    collide: bool,
+    layer: f64,
+    /// Layers that differ by less collide.
+    layer_range: f64,
+}
+
+impl CollisionSettings {
+    fn of(program: &Program, object: &Object, moment: &EvalContext) -> Self {
+        let (node, nucleus) = program.node_of(object.kind);
+        Self {
+            kind: object.kind,
+            nucleus: nucleus.node(),
+            self_collides: self_collides(moment, node),
+            collide: moment.get(node, &n_base::COLLIDE),
+            layer: moment.get(node, &n_base::COLLISION_LAYER),
+            layer_range: moment.get(nucleus.node(), &attributes::nucleus::COLLISION_LAYER_RANGE),
+        }
     }
-    let collide = moment.get(node_a, &n_base::COLLIDE) && moment.get(node_b, &n_base::COLLIDE);
-    let range = moment.get(nucleus_a.node(), &nucleus::COLLISION_LAYER_RANGE);
-    let [layer_a, layer_b] = [node_a, node_b].map(|node| moment.get(node, &n_base::COLLISION_LAYER));
-    let is_in_range = match [kind_a, kind_b] {
-        [ObjectKind::Cloth(_), ObjectKind::Cloth(_)] => (layer_a - layer_b).abs() < range,
+
+    /// Whether the two collide. Objects of different nuclei never do.
+    fn collides_with(&self, other: &Self) -> bool {
         // A collider has effect on its own layer and on higher ones.
-        [ObjectKind::Cloth(_), ObjectKind::Collider(_)] => layer_a >= layer_b && layer_a - layer_b < range,
-        [ObjectKind::Collider(_), ObjectKind::Cloth(_)] => layer_b >= layer_a && layer_b - layer_a < range,
-        [ObjectKind::Collider(_), ObjectKind::Collider(_)] => false,
-    };
-    nucleus_a.node() == nucleus_b.node() && collide && is_in_range
+        let is_in_range = |cloth: &Self, collider: &Self| {
+            cloth.layer >= collider.layer && cloth.layer - collider.layer < self.layer_range
+        };
+        self.nucleus == other.nucleus
+            && self.collide
+            && other.collide
+            && match [self.kind, other.kind] {
+                [ObjectKind::Cloth(_), ObjectKind::Cloth(_)] => {
+                    (self.layer - other.layer).abs() < self.layer_range
+                }
+                [ObjectKind::Cloth(_), ObjectKind::Collider(_)] => is_in_range(self, other),
+                [ObjectKind::Collider(_), ObjectKind::Cloth(_)] => is_in_range(other, self),
+                [ObjectKind::Collider(_), ObjectKind::Collider(_)] => false,
+            }
+    }
 }
