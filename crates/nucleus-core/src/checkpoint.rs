@@ -18,7 +18,7 @@ use crate::bytes::{
 };
 use crate::constraints::angle::AngleGroup;
 use crate::constraints::link::glue::find_pieces;
-use crate::contact::cloth::contacts::ClothContacts;
+use crate::contact::cloth::contacts::{ClothContacts, ContactEffects};
 use crate::contact::cloth::motion_bounds::Trajectories;
 use crate::contact::cloth::untangling::{Correction, Intersection};
 use crate::contact::collider::contacts::ColliderContacts;
@@ -285,8 +285,9 @@ fn rebuild<R: Real>(solver: &mut Solver<R>) {
         collider.begin_frame(&start, &end);
         collider.now = now;
     }
-    if let Some(ClothContacts { elements, .. }) = &mut solver.contact.cloth_contacts {
+    if let Some(ClothContacts { elements, materials, effects, .. }) = &mut solver.contact.cloth_contacts {
         elements.refit(&solver.pool);
+        *effects = ContactEffects::of(materials);
     }
     let models = (&solver.model.cloths[..], &solver.model.colliders[..]);
     solver.links.rebuild(models);
@@ -433,7 +434,7 @@ checkpoint_struct!([R: Real] ClothContacts<R> {
     columns: [bounds_violated, interval_start],
     values: [materials, overlapping, interval],
     parts: [elements, trajectories, cache, untangling],
-    rebuilt: [buffers, frozen, local_anchors],
+    rebuilt: [effects, buffers, frozen, local_anchors],
 });
 
 checkpoint_struct!([R: Real] Trajectories<R> { columns: [origin, travel], values: [], parts: [], rebuilt: [] });

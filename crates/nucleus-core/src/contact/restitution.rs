@@ -129,8 +129,7 @@ fn bounce<R: Real>(state: &mut State<R>, touch: &TouchingPoint<R>, restitution: 
 }
 
 fn restitution_at_cloth<R: Real>(pass: &mut ContactPass<'_, R>, restitution: Restitution<R>) {
-    let materials = pass.contact.cloth_contacts.iter().flat_map(|contacts| contacts.materials.present());
-    if !materials.into_iter().any(|material| material.has_restitution()) {
+    if !pass.contact.cloth_contacts.as_ref().is_some_and(|contacts| contacts.effects.restitution) {
         return;
     }
     let mut velocities = std::mem::take(&mut pass.state.velocity);

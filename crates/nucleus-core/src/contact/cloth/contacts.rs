@@ -29,6 +29,8 @@ pub struct ClothContacts<R> {
     pub elements: ElementGroups,
     /// Contact materials in this frame, by cloth and cloth.
     pub materials: ContactMaterials<R>,
+    /// Which effects they have.
+    pub effects: ContactEffects,
     /// Whether the two cloths of each material may overlap, since the scene brought them together. In other cloths, what is
     /// nearer than its thickness is pressed together, and bears loads.
     pub overlapping: PairTable<bool>,
@@ -52,6 +54,28 @@ pub struct ClothContacts<R> {
     pub untangling: Untangling,
 }
 
+/// Which effects contact among cloths has in a frame: found once, because a scene of a thousand cloths has a million pairs.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ContactEffects {
+    /// Some cloths collide.
+    pub contact: bool,
+    /// Some stick to each other.
+    pub adhesion: bool,
+    /// Some bounce off each other.
+    pub restitution: bool,
+}
+
+impl ContactEffects {
+    /// Those of the materials of a frame.
+    pub fn of<R: Real>(materials: &ContactMaterials<R>) -> Self {
+        materials.present().fold(Self::default(), |found, material| Self {
+            contact: true,
+            adhesion: found.adhesion || material.has_adhesion(),
+            restitution: found.restitution || material.has_restitution(),
+        })
+    }
+}
+
 impl<R: Real> ClothContacts<R> {
     /// For cloths of which some may collide with others or with themselves.
     pub fn new(cloths: &[ClothModel<R>], anchors: &[[f64; 3]]) -> Self {
@@ -59,6 +83,7 @@ impl<R: Real> ClothContacts<R> {
         Self {
             elements: ElementGroups::new(cloths, anchors),
             materials: PairTable::EMPTY,
+            effects: ContactEffects::default(),
             overlapping: PairTable::EMPTY,
             trajectories: Trajectories::new(rows),
             local_anchors: LocalAnchors::default(),
@@ -85,6 +110,7 @@ impl<R: Real> ClothContacts<R> {
             local_anchors,
             // Not by row.
             materials: _,
+            effects: _,
             overlapping: _,
             interval: _,
             // Written in each step before it is read.
@@ -165,7 +191,7 @@ impl<R: Real> ClothContacts<R> {
 
     /// Whether any two cloths can collide in this frame.
     pub fn is_enabled(&self) -> bool {
-        self.materials.present().next().is_some()
+        self.effects.contact
     }
 
     /// Sets the margin of the boxes of each cloth: half of what its own elements reach.

@@ -4,7 +4,7 @@ use crate::constraints::link::lists::{ConstraintLinks, Links};
 use crate::contact::cloth::broad_phase::update_cloth_candidates;
 use crate::contact::cloth::cache::ContactCache;
 use crate::contact::cloth::contact::{ClothStep, FrictionAnchors};
-use crate::contact::cloth::contacts::ClothContacts;
+use crate::contact::cloth::contacts::{ClothContacts, ContactEffects};
 use crate::contact::material::{ContactMaterial, MaterialMaps};
 use crate::contact::pair_table::PairTable;
 use crate::contact::system::{ContactPass, ContactSystem};
@@ -32,6 +32,7 @@ pub fn begin_cloth_contact<R: Real>(state: &State<R>, contact: &mut ContactSyste
             cloth_contacts.untangling.is_search_due[materials.pair(at)[0]] = true;
         }
     }
+    cloth_contacts.effects = ContactEffects::of(&materials);
     let before = std::mem::replace(&mut cloth_contacts.materials, materials);
     cloth_contacts.search_changed(&before);
     cloth_contacts.local_anchors.clear();
@@ -114,9 +115,7 @@ pub fn resolve_cloth_contacts<R: Real>(
 
 /// Applies adhesion of cloth with itself and with other cloth.
 pub fn apply_cloth_adhesion<R: Real>(pass: &mut ContactPass<'_, R>) {
-    let has_adhesion =
-        |contacts: &ClothContacts<R>| contacts.materials.present().any(ContactMaterial::has_adhesion);
-    if pass.contact.cloth_contacts.as_ref().is_some_and(has_adhesion) {
+    if pass.contact.cloth_contacts.as_ref().is_some_and(|contacts| contacts.effects.adhesion) {
         update_cloth_candidates(pass);
         pass.with_cloth_contacts(|cache, step, pool| cache.adhere(step, pool));
     }
