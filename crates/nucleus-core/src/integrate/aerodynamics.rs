@@ -29,6 +29,8 @@ pub struct Air<R> {
     /// Factors on the relative velocity along the normal, and along the surface.
     along_normal: R,
     along_surface: R,
+    /// What these factors take too much from the change of velocity by forces, in the same directions.
+    of_kick: [R; 2],
     /// Lift over the mass times the length of the step, in s/m.
     lift: R,
 }
@@ -55,6 +57,32 @@ enum DragStep {
     HalfSteps,
     /// An exponential, on particles in the Classic reading, which matches recorded output of the original to 1e-6.
     Exponential,
+}
+
+/// What drag in a time step leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Remaining {
+    /// Of the velocity through the air at the start of the step, as a share.
+    pub velocity: f64,
+    /// Of the change of velocity by forces in the step, as a share.
+    pub kick: f64,
+}
+
+impl DragStep {
+    /// What remains after a step in which drag takes the share `decay` to first order.
+    ///
+    /// Forces and drag act together, so that the share of their kick is that of an implicit step in every form. It equals
+    /// the share of the velocity up to the square of `decay`, as recorded falls show. Where drag takes most of the velocity,
+    /// it leaves the terminal speed, of which an exponential would leave nothing.
+    fn remaining(self, decay: f64) -> Remaining {
+        let kick = 1.0 / (1.0 + decay);
+        let velocity = match self {
+            Self::Implicit => kick,
+            Self::HalfSteps => 1.0 / ((1.0 + decay / 2.0) * (1.0 + decay / 2.0)),
+            Self::Exponential => libm::exp(-PARTICLE_DRAG * decay),
+        };
+        Remaining { velocity, kick }
+    }
 }
 
 /// Share of the rate of drag that particles feel in the Classic reading: recorded falls give 0.99913 at steps of 1/72 s
@@ -86,29 +114,22 @@ impl AirForces {
         Self { step, ..self }
     }
 
-    /// The share of its velocity through the air that a particle keeps in a step.
-    pub fn remaining(&self) -> f64 {
-        self.remaining_at(self.drag)
-    }
-
-    /// The share of a velocity that remains after a step at this rate of drag per second.
-    fn remaining_at(&self, rate: f64) -> f64 {
-        let decay = rate * self.h;
-        match self.step {
-            DragStep::Implicit => 1.0 / (1.0 + decay),
-            DragStep::HalfSteps => 1.0 / ((1.0 + decay / 2.0) * (1.0 + decay / 2.0)),
-            DragStep::Exponential => libm::exp(-PARTICLE_DRAG * decay),
-        }
+    /// What drag leaves of the velocity of a particle in a step.
+    pub fn remaining(&self) -> Remaining {
+        self.step.remaining(self.drag * self.h)
     }
 
     /// The forces on a point with these factors.
     pub fn at<R: Real>(&self, factors: &AirFactors) -> Air<R> {
-        let remaining = |rate: f64| R::from_f64(self.remaining_at(rate));
         let drag = self.drag * factors.drag;
+        let rates = [drag, drag * (self.tangential_drag * factors.tangential_drag)];
+        let remaining = rates.map(|rate| self.step.remaining(rate * self.h));
+        let [along_normal, along_surface] = remaining.map(|share| R::from_f64(share.velocity));
         Air {
             wind: [self.wind.x, self.wind.y, self.wind.z].map(R::from_f64),
-            along_normal: remaining(drag),
-            along_surface: remaining(drag * (self.tangential_drag * factors.tangential_drag)),
+            along_normal,
+            along_surface,
+            of_kick: remaining.map(|share| R::from_f64(share.kick - share.velocity)),
             lift: R::from_f64(self.lift * factors.lift * self.h),
         }
     }
@@ -121,19 +142,20 @@ impl<R: Real> Air<R> {
         Self { wind: std::array::from_fn(|axis| self.wind[axis] + added[axis]), ..*self }
     }
 
-    /// The velocity after the step.
+    /// The velocity after the step, from that `before` it and that with the kick of all other forces.
     #[inline(always)]
-    pub fn slow(&self, velocity: [R; 4], normal: [R; 3]) -> [R; 4] {
-        let through: [R; 3] = std::array::from_fn(|axis| velocity[axis] - self.wind[axis]);
+    pub fn slow(&self, before: [R; 4], kicked: [R; 4], normal: [R; 3]) -> [R; 4] {
+        let through: [R; 3] = std::array::from_fn(|axis| kicked[axis] - self.wind[axis]);
         let facing = dot(normal, through);
         let speed_squared = dot(through, through);
         let turned = self.turn(through, normal, facing, speed_squared);
-        let facing = dot(normal, turned);
-        let slowed = |axis: usize| {
-            let across = normal[axis] * facing;
-            self.wind[axis] + across * self.along_normal + (turned[axis] - across) * self.along_surface
-        };
-        [slowed(0), slowed(1), slowed(2), velocity[3]]
+        let slowed = scaled([self.along_normal, self.along_surface], turned, normal);
+        let slowed: [R; 3] = std::array::from_fn(|axis| self.wind[axis] + slowed[axis]);
+        if self.of_kick == [R::ZERO; 2] {
+            return [slowed[0], slowed[1], slowed[2], kicked[3]];
+        }
+        let kick = scaled(self.of_kick, std::array::from_fn(|axis| kicked[axis] - before[axis]), normal);
+        [slowed[0] + kick[0], slowed[1] + kick[1], slowed[2] + kick[2], kicked[3]]
     }
 
     /// Lift rotates the relative velocity and keeps its length.
@@ -158,6 +180,16 @@ impl<R: Real> Air<R> {
         let scale = (speed_squared / dot(lifted, lifted)).sqrt();
         lifted.map(|x| x * scale)
     }
+}
+
+/// A vector with a factor along the normal, and another along the surface.
+#[inline(always)]
+fn scaled<R: Real>([along_normal, along_surface]: [R; 2], vector: [R; 3], normal: [R; 3]) -> [R; 3] {
+    let facing = dot(normal, vector);
+    std::array::from_fn(|axis| {
+        let across = normal[axis] * facing;
+        across * along_normal + (vector[axis] - across) * along_surface
+    })
 }
 
 /// Writes the normals of all points that air acts on. Reads positions.

@@ -181,8 +181,8 @@ unsafe fn move_points<R: Real>(
             let normal = columns.normal[points.start as usize + k];
             let air = mapped.as_ref().unwrap_or(air);
             let slowed = match columns.added_wind.get(points.start as usize + k) {
-                Some(added) => air.with_wind(added.xyz()).slow(kicked.to_array(), normal),
-                None => air.slow(kicked.to_array(), normal),
+                Some(added) => air.with_wind(added.xyz()).slow(v.0, kicked.to_array(), normal),
+                None => air.slow(v.0, kicked.to_array(), normal),
             };
             kicked = Row4(slowed).lanes();
         }

@@ -11,7 +11,7 @@ use crate::fields::update_fields_of;
 use crate::input::frame::{Birth, ClothFrame, FrameInput};
 use crate::input::validation::is_in_range;
 use crate::input::{ClothId, PointId};
-use crate::integrate::aerodynamics::AirForces;
+use crate::integrate::aerodynamics::{AirForces, Remaining};
 use crate::math::{Real, Row4};
 use crate::model::Model;
 use crate::parallel::thread_pool::ThreadPool;
@@ -291,8 +291,8 @@ struct Flight {
     /// In m/s².
     acceleration: Vector3<f64>,
     wind: Vector3<f64>,
-    /// Share of the velocity through the air that remains after a time step.
-    remaining: f64,
+    /// What remains after a time step.
+    remaining: Remaining,
     /// Length of a time step in seconds.
     h: f64,
 }
@@ -305,23 +305,24 @@ impl Flight {
         let gravity = if cloth.feels_gravity { frame.gravity } else { Vector3::zeros() };
         let wind = if cloth.feels_wind { frame.wind } else { Vector3::zeros() } + cloth.local_wind;
         let air = AirForces::new(frame, cloth, point_mass, h);
-        let remaining = air.map_or(1.0, |air| air.on_particles().remaining());
+        let remaining =
+            air.map_or(Remaining { velocity: 1.0, kick: 1.0 }, |air| air.on_particles().remaining());
         Self { acceleration: gravity + cloth.local_force / mass, wind, remaining, h }
     }
 
     /// Position and velocity at an age within the substep.
     ///
-    /// A time step of length h takes the velocity u through the air to f (u + h g), and moves by h times that. After n steps
-    /// u = U + (u0 - U) f^n with U = h g f / (1 - f), and the travel is h (n U + (u0 - U) f (1 - f^n) / (1 - f)). A new particle
+    /// A time step of length h takes the velocity u through the air to f u + k h g, and moves by h times that. After n steps
+    /// u = U + (u0 - U) f^n with U = h g k / (1 - f), and the travel is h (n U + (u0 - U) f (1 - f^n) / (1 - f)). A new particle
     /// takes age / h for n, so that its path is the same whenever in a step it is born.
     fn after(&self, birth: &Birth, age: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let Self { acceleration, wind, remaining: f, h } = *self;
+        let Self { acceleration, wind, remaining: Remaining { velocity: f, kick }, h } = *self;
         if f > 1.0 - MIN_DRAG {
             let velocity = birth.velocity + acceleration * age;
             let travel = birth.velocity * age + acceleration * (age * (age + h) / 2.0);
             return (birth.position + travel, velocity);
         }
-        let (steps, last) = (age / h, acceleration * (h * f / (1.0 - f)));
+        let (steps, last) = (age / h, acceleration * (h * kick / (1.0 - f)));
         let share = libm::pow(f, steps);
         let apart = birth.velocity - wind - last;
         let travel = (last * steps + apart * (f * (1.0 - share) / (1.0 - f))) * h;

@@ -224,37 +224,56 @@ fn damp_slows_a_triangle_as_its_rate_says_at_any_number_of_substeps() {
     }
 }
 
+/// The speed of fall in still air after two seconds over that at which drag carries the weight, in three substeps a frame.
+fn terminal_ratio(
+    [drag, mass]: [f64; 2],
+    elements: Elements,
+    lists: ClothLists,
+    resistance: ResistanceModel,
+) -> f64 {
+    let is_particle = elements == Elements::Points;
+    // Particles feel drag from all sides, a sheet along its normal.
+    let tangential_drag = if is_particle { 1.0 } else { 0.0 };
+    let settings = ClothFrame { drag, tangential_drag, elements, ..still() };
+    let input = FrameInput { cloths: vec![settings], ..frame(3, resistance) };
+    let particle = Surface { positions: vec![Vec3::zeros()], ..Surface::default() };
+    let surface = if is_particle { particle } else { grid(3, 3, Vec3::x() * 0.2, Vec3::z() * 0.2) };
+    let mut builder = ModelBuilder::new();
+    let air = ClothLists { air: true, ..lists };
+    builder.cloth(Cloth::new(surface, Mass::PerPoint(mass), air)).expect("an object");
+    let mut solver = Solver::<f32>::new(builder, 1);
+    let mut heights = [0.0; 2];
+    for _ in 0..48 {
+        solver.step(&input, &mut ());
+        heights = [heights[1], solver.point(CLOTH, 0).y];
+    }
+    // Drag takes the velocity at the rate 24 drag / mass.
+    24.0 * (heights[0] - heights[1]) * 24.0 * drag / (9.81 * mass)
+}
+
+/// A particle and a sheet of cloth, with their lists.
+const FALLING: [(Elements, ClothLists); 2] = [(Elements::Points, ClothLists::NONE), (Elements::Faces, LINKS)];
+
 #[test]
 fn the_terminal_speed_in_still_air_is_that_of_the_drag_whatever_the_mass() {
-    // Drag takes the velocity at the rate 24 drag / mass, of a sheet along its normal.
-    let terminal = |drag: f64, mass: f64| 9.81 * mass / (24.0 * drag);
-    for (drag, mass) in [(0.01, 0.00027), (0.01, 0.01), (2.0, 0.05)] {
-        let input = |elements| {
-            // Particles feel drag from all sides.
-            let tangential_drag = if elements == Elements::Points { 1.0 } else { 0.0 };
-            let settings = ClothFrame { drag, tangential_drag, elements, ..still() };
-            FrameInput { cloths: vec![settings], ..frame(3, physical(48.0)) }
-        };
-        let mut builder = ModelBuilder::new();
-        let particle = Surface { positions: vec![Vec3::zeros()], ..Surface::default() };
-        builder
-            .cloth(Cloth::new(particle, Mass::PerPoint(mass), ClothLists { air: true, ..ClothLists::NONE }))
-            .expect("a particle");
-        let sheet = grid(3, 3, Vec3::x() * 0.2, Vec3::z() * 0.2);
-        let mut of_sheet = ModelBuilder::new();
-        of_sheet
-            .cloth(Cloth::new(sheet, Mass::PerPoint(mass), ClothLists { air: true, ..LINKS }))
-            .expect("a sheet");
-        for (builder, elements) in [(builder, Elements::Points), (of_sheet, Elements::Faces)] {
-            let mut solver = Solver::<f32>::new(builder, 1);
-            let mut heights = [0.0; 2];
-            for _ in 0..48 {
-                solver.step(&input(elements), &mut ());
-                heights = [heights[1], solver.point(CLOTH, 0).y];
-            }
-            let speed = 24.0 * (heights[0] - heights[1]);
-            let ratio = speed / terminal(drag, mass);
+    for [drag, mass] in [[0.01, 0.00027], [0.01, 0.01], [2.0, 0.05]] {
+        for (elements, lists) in FALLING {
+            let ratio = terminal_ratio([drag, mass], elements, lists, physical(48.0));
             assert!((ratio - 1.0).abs() < 2e-3, "{drag} {mass} {elements:?}: {ratio}");
+        }
+    }
+}
+
+#[test]
+fn nothing_hangs_in_the_air_in_the_classic_reading_however_light_it_is_for_its_drag() {
+    // Drag over the length of a time step, up to which drag is slow, and from which on it leaves nothing of a velocity.
+    for (share, tolerance) in
+        [(0.05, 0.03), (0.3, 0.15), (2.0, 0.25), (10.0, 0.1), (300.0, 0.01), (1e5, 0.01)]
+    {
+        for (elements, lists) in FALLING {
+            let ratio = terminal_ratio([0.5, 0.5 / (3.0 * share)], elements, lists, ResistanceModel::Classic);
+            println!("{share} {elements:?}: {ratio}");
+            assert!((ratio - 1.0).abs() < tolerance, "{share} {elements:?}: {ratio}");
         }
     }
 }
