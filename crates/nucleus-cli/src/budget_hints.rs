@@ -81,20 +81,23 @@ pub fn budgets(program: &Program) -> Vec<String> {
 
 /// Time steps in 1/24 s from which on single precision is farther from the limit than with half of them, in fast motion. A
 /// correction per step is then below half the rounding of a displacement, and its smaller components are lost: a pendulum of 1 m
-/// that starts level is 0.07° from its limit after a second with 384 steps, and 1.5° with 768.
+/// that starts level is 0.07° from its limit after a second with 384 steps, and 1.5° with 768. In Classic with `subSteps` it is
+/// 0.03° from it with 384 steps, 0.12° with 600 and 0.71° with 2,000; with stretchy links 0.36° with 600.
 const SINGLE_PRECISION: f64 = 600.0;
 
 /// Warnings of the nuclei whose time steps single precision does not resolve, one line each.
 pub fn unresolved_steps(program: &Program) -> Vec<String> {
     let warning = |(own, input): (&nucleus_graph::compile::NucleusProgram, FrameInput)| {
-        let ResistanceModel::Physical { evaluations } = input.resistance else { return None };
+        let (evaluations, means) = match input.resistance {
+            ResistanceModel::Physical { evaluations } => (evaluations, "`evaluations` and `subSteps`"),
+            ResistanceModel::Classic => (0.0, "`subSteps`"),
+        };
         let name = program.graph().node(own.node()).name();
         let steps = evaluations.max(f64::from(input.substeps) * COUNT_PERIOD / input.duration);
         (steps > SINGLE_PRECISION).then(|| {
             format!(
                 "warning: `{name}` takes {} time steps in 1/24 s: in single precision, errors of fast motion grow again \
-                 from about {} on, because positions are rounded in each step; use fewer `evaluations` and `subSteps`, or \
-                 `--scalar f64`",
+                 from about {} on, because positions are rounded in each step; use fewer {means}, or `--scalar f64`",
                 figures::number(steps.round()),
                 figures::number(SINGLE_PRECISION)
             )
@@ -189,6 +192,11 @@ mod tests {
         assert_eq!(warnings("evaluations: 600"), [""; 0]);
         assert!(warnings("evaluations: 12000")[0].starts_with("warning: `nucleus` takes 12000 time steps"));
         assert!(warnings("subSteps: 800")[0].starts_with("warning: `nucleus` takes 800 time steps"));
+        let classic = |substeps: u32| warnings(&format!("resistanceModel: classic, subSteps: {substeps}"));
+        assert_eq!(classic(600), [""; 0]);
+        assert!(
+            classic(800)[0].contains("takes 800 time steps") && classic(800)[0].contains("fewer `subSteps`,")
+        );
     }
 
     #[test]
