@@ -145,7 +145,7 @@ impl Cause {
             Self::NoMeshFile(_) => "the mesh stands still, with its points at the first frame",
             Self::NoValueFile(_) => "the scene is refused until the file is there",
             Self::Value(_) => "the attribute keeps its default, or the nearest valid value",
-            Self::Range(_) => "the nearest valid value takes its place",
+            Self::Range(_) => "a valid value takes its place",
             Self::Keys => "it keeps its value at the first frame",
             Self::Driven(_) | Self::Expression(_) => "it keeps the value stored in the file",
             Self::Approximate(_) => "small differences",

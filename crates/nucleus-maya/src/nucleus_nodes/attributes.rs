@@ -418,6 +418,16 @@ fn is_mass(row: &Attribute) -> bool {
     [&n_base::POINT_MASS.row, &n_particle::POINT_MASS.row].contains(&row)
 }
 
+/// What takes the place of a value of 0 or less that has no meaning here: of a mass the least of its slider, and of a scale
+/// of space, which Maya does not bound either, its default. The least valid one would shrink a scene to nothing.
+fn in_place_of_zero(row: &Attribute) -> Option<f64> {
+    match &row.default {
+        _ if is_mass(row) => row.range.soft.map(|(least, _)| least),
+        Some(Value::Float(default)) if row == &nucleus::SPACE_SCALE.row => Some(*default),
+        _ => None,
+    }
+}
+
 /// The first number that differs between a setting and the valid one that takes its place. Rounding is as in Maya.
 fn first_change(row: &Attribute, from: &Setting, to: &Setting) -> Option<String> {
     let numbers = |setting: &Setting| -> Vec<f64> {
@@ -440,13 +450,16 @@ fn first_change(row: &Attribute, from: &Setting, to: &Setting) -> Option<String>
     Some(format!("{old} is not valid here: {new} takes its place"))
 }
 
-/// The nearest setting that fits a row.
+/// The nearest setting that fits a row, or one in place of a zero that has no meaning here.
 fn fitted(setting: &Setting, row: &Attribute) -> Option<Setting> {
     use nucleus_graph::animation::{Curve, Key};
     let near = |x: f64| {
-        let x = row.range.clamp(if x.is_finite() { x } else { 0.0 });
+        let x = if x.is_finite() { x } else { 0.0 };
+        if let (true, Some(other)) = (x <= 0.0, in_place_of_zero(row)) {
+            return other;
+        }
+        let x = row.range.clamp(x);
         match row.kind {
-            _ if is_mass(row) && x <= 0.0 => row.range.soft.map_or(x, |(least, _)| least),
             Kind::Bool => f64::from(u8::from(x >= 0.5)),
             Kind::Int => x.round(),
             Kind::Choice(words) => {

@@ -293,7 +293,7 @@ impl<'s> Importer<'s> {
         if !self.is_own && !self.options.physical {
             self.set(to, row, Setting::Fixed(Value::Choice(Choice(0))));
             // The original reads speeds for lift in scene units; where a unit is a metre that is the same.
-            if self.scene.stored(from, &["spsc", "spaceScale"]).is_some_and(|scale| scale != 1.0) {
+            if self.graph.node(to).get(&nucleus::SPACE_SCALE) != 1.0 {
                 let row = &nucleus::LIFT_IN_SCENE_UNITS.row;
                 self.set(to, row, Setting::Fixed(Value::Bool(true)));
             }

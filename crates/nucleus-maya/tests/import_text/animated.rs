@@ -79,11 +79,12 @@ fn values_outside_the_range_of_an_attribute_are_listed() {
         ("c.friction", "-0.5 is not valid here: 0 takes"),
         ("c.pointMass", "0 is not valid here: 0.001 takes"),
         ("n.subSteps", "0 is not valid here: 1 takes"),
-        ("n.spaceScale", "0 is not valid here"),
+        ("n.spaceScale", "0 is not valid here: 1 takes"),
     ] {
         assert!(read.omits(what, why), "{what}: {}", read.imported.omissions);
     }
     assert_eq!(read.imported.omissions.len(), 4, "{}", read.imported.omissions);
+    assert!(!read.text().contains("liftInSceneUnits"), "a unit is a metre: {}", read.text());
     assert_round_trip(&read);
 }
 
