@@ -43,7 +43,17 @@ fn crossings(cloths: &[(&Surface, Vec<Vec3>)]) -> usize {
         let round = [orient([*p, *q, *a, *b]), orient([*p, *q, *b, *c]), orient([*p, *q, *c, *a])];
         sides[0] * sides[1] < 0.0 && (round.iter().all(|x| *x > 0.0) || round.iter().all(|x| *x < 0.0))
     };
-    edges.iter().map(|edge| faces.iter().filter(|face| through(edge, face)).count()).sum()
+    // The faces that an edge can pass through are a run of them, sorted along x.
+    let low = |corners: &[Vec3]| corners.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
+    let high = |corners: &[Vec3]| corners.iter().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max);
+    faces.sort_by(|a, b| low(&a.2).total_cmp(&low(&b.2)));
+    let widest = faces.iter().map(|face| high(&face.2) - low(&face.2)).fold(0.0, f64::max);
+    let near = |edge: &(usize, [u32; 2], [Vec3; 2])| {
+        let from = faces.partition_point(|face| low(&face.2) < low(&edge.2) - widest);
+        let to = faces.partition_point(|face| low(&face.2) <= high(&edge.2));
+        &faces[from..to]
+    };
+    edges.iter().map(|edge| near(edge).iter().filter(|face| through(edge, face)).count()).sum()
 }
 
 fn positions(solver: &Solver<f32>, cloth: u32, points: usize) -> Vec<Vec3> {
