@@ -61,7 +61,7 @@ fn a_stack_of_sheets_slides_down_a_smoother_slope_as_one() {
 
 /// A strip of 9 by 45 cm that stands upright, sinks to the ground and folds onto itself.
 fn folding_strip() -> (Surface, FrameInput) {
-    let mut strip = grid(7, 31, Vec3::x() * 0.09, Vec3::new(0.0, 0.45, 0.02));
+    let mut strip = grid(5, 21, Vec3::x() * 0.09, Vec3::new(0.0, 0.45, 0.02));
     strip.positions.iter_mut().for_each(|p| p.y += 0.004);
     let self_collision =
         SelfCollision { on: true, thickness: THICKNESS, elements: Elements::Faces, edges: true };
