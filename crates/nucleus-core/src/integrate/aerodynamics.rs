@@ -149,13 +149,12 @@ impl<R: Real> Air<R> {
         let facing = dot(normal, through);
         let speed_squared = dot(through, through);
         let turned = self.turn(through, normal, facing, speed_squared);
-        let slowed = scaled([self.along_normal, self.along_surface], turned, normal);
-        let slowed: [R; 3] = std::array::from_fn(|axis| self.wind[axis] + slowed[axis]);
-        if self.of_kick == [R::ZERO; 2] {
-            return [slowed[0], slowed[1], slowed[2], kicked[3]];
+        let mut slowed = add_scaled(self.wind, [self.along_normal, self.along_surface], turned, normal);
+        if self.of_kick != [R::ZERO; 2] {
+            let kick = std::array::from_fn(|axis| kicked[axis] - before[axis]);
+            slowed = add_scaled(slowed, self.of_kick, kick, normal);
         }
-        let kick = scaled(self.of_kick, std::array::from_fn(|axis| kicked[axis] - before[axis]), normal);
-        [slowed[0] + kick[0], slowed[1] + kick[1], slowed[2] + kick[2], kicked[3]]
+        [slowed[0], slowed[1], slowed[2], kicked[3]]
     }
 
     /// Lift rotates the relative velocity and keeps its length.
@@ -182,13 +181,18 @@ impl<R: Real> Air<R> {
     }
 }
 
-/// A vector with a factor along the normal, and another along the surface.
+/// Adds a vector, with a factor along the normal and another along the surface.
 #[inline(always)]
-fn scaled<R: Real>([along_normal, along_surface]: [R; 2], vector: [R; 3], normal: [R; 3]) -> [R; 3] {
+fn add_scaled<R: Real>(
+    to: [R; 3],
+    [along_normal, along_surface]: [R; 2],
+    vector: [R; 3],
+    normal: [R; 3],
+) -> [R; 3] {
     let facing = dot(normal, vector);
     std::array::from_fn(|axis| {
         let across = normal[axis] * facing;
-        across * along_normal + (vector[axis] - across) * along_surface
+        to[axis] + across * along_normal + (vector[axis] - across) * along_surface
     })
 }
 
