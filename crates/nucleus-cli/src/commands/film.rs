@@ -27,12 +27,12 @@ pub enum OutputKind {
 }
 
 impl OutputKind {
-    /// The kind that a file name implies.
-    pub fn of(out: &Path, animate: bool) -> Result<Self> {
+    /// The kind that a file name implies. `may_be_pattern`: a `#` in it stands for the frame number.
+    pub fn of(out: &Path, animate: bool, may_be_pattern: bool) -> Result<Self> {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let end = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         Ok(match end.as_str() {
-            "png" | "exr" if name.contains('#') => Self::Sequence,
+            "png" | "exr" if may_be_pattern && name.contains('#') => Self::Sequence,
             "png" if animate => Self::AnimatedPng,
             "png" | "exr" => Self::Still,
             "gif" => Self::Gif,
@@ -224,13 +224,13 @@ mod tests {
 
     #[test]
     fn the_name_determines_the_kind_of_output() {
-        let kind = |name: &str| OutputKind::of(Path::new(name), false).unwrap();
+        let kind = |name: &str| OutputKind::of(Path::new(name), false, true).unwrap();
         assert_eq!(kind("a.png"), OutputKind::Still);
         assert_eq!(kind("a.GIF"), OutputKind::Gif);
         assert_eq!([kind("a.exr"), kind("a.EXR")], [OutputKind::Still; 2]);
         assert_eq!([kind("a/b.####.png"), kind("b.#.exr")], [OutputKind::Sequence; 2]);
         assert_eq!(kind("a.mp4"), OutputKind::Film);
-        assert!(OutputKind::of(Path::new("a.jpg"), true).is_err());
+        assert!(OutputKind::of(Path::new("a.jpg"), true, true).is_err());
     }
 
     #[test]

@@ -87,7 +87,7 @@ impl Render {
             }
         };
         files::refuse_own_input(&self.file, &out)?;
-        let kind = OutputKind::of(&out, self.animate)?;
+        let kind = OutputKind::of(&out, self.animate, self.out.is_some())?;
         self.check_options(&cache, kind)?;
         files::make_folder_of(&out)?;
         let is_still = matches!(kind, OutputKind::Still | OutputKind::Sequence);
