@@ -52,11 +52,11 @@ fn main() -> Result<(), ViewError> {
     draw(&objects, &camera, &strain).write_png(folder.join("strain.png"))?;
 
     let small = Style { size: [480, 270], ..plain };
-    let mut film = AnimationWriter::create(folder.join("film.png"), small.size, 12.0)?;
+    let mut film = AnimationWriter::create(folder.join("film.png"), small.size)?;
     for frame in 0..12 {
         let turn = frame as f32 / 12.0 * std::f32::consts::TAU;
         let eye = [turn.sin() * 6.0, 3.0, turn.cos() * 6.0];
-        film.push(&draw(&objects, &Camera { eye, ..camera }, &small))?;
+        film.push(&draw(&objects, &Camera { eye, ..camera }, &small), 1.0 / 12.0)?;
     }
     film.finish()
 }

@@ -110,11 +110,7 @@ fn a_gif_has_every_frame_and_plays_in_real_time() {
     let (folder, mut cache) = recorded(Sample::default());
     let path = folder.path().join("film.gif");
     let mut film = Film::of(&mut cache, 1, small()).unwrap();
-    let mut file = GifWriter::create(&path, small().size, film.fps()).unwrap();
-    for place in 0..film.len() {
-        file.push(&film.picture(place).unwrap()).unwrap();
-    }
-    file.finish().unwrap();
+    write_gif(&mut film, &path);
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);
     let mut decoder = options.read_info(std::fs::File::open(&path).unwrap()).unwrap();

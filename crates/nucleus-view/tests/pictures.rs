@@ -196,8 +196,8 @@ fn an_animation_holds_every_frame() {
         draw(&[object(Kind::Cloth, &faces, &square(height, 1.0))], &FROM_ABOVE, &small())
     };
     let images = [frame(0.0), frame(1.0), frame(1.0), frame(2.0), frame(-1.0)];
-    let mut film = AnimationWriter::create(&path, small().size, 24.0).unwrap();
-    images.iter().for_each(|image| film.push(image).unwrap());
+    let mut film = AnimationWriter::create(&path, small().size).unwrap();
+    images.iter().for_each(|image| film.push(image, 1.0 / 24.0).unwrap());
     film.finish().unwrap();
     let shown = play(&path);
     assert_eq!(shown.len(), images.len());
@@ -211,8 +211,8 @@ fn an_animation_refuses_frames_of_another_size_and_needs_a_frame() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.png");
     let image = draw(&[], &FROM_ABOVE, &small());
-    let mut film = AnimationWriter::create(&path, [10, 10], 24.0).unwrap();
-    assert!(matches!(film.push(&image), Err(ViewError::FrameSize { found: [64, 48], .. })));
+    let mut film = AnimationWriter::create(&path, [10, 10]).unwrap();
+    assert!(matches!(film.push(&image, 1.0), Err(ViewError::FrameSize { found: [64, 48], .. })));
     assert!(matches!(film.finish(), Err(ViewError::NoFrame { .. })));
     let nowhere = folder.path().join("missing").join("still.png");
     assert!(matches!(image.write_png(nowhere), Err(ViewError::Create { .. })));

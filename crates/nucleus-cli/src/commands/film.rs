@@ -56,8 +56,8 @@ pub fn write<R: Read + Seek>(
 ) -> Result<PathBuf> {
     match kind {
         OutputKind::Gif => {
-            let mut file = GifWriter::create(out, size, film.fps())?;
-            each(film, report, |image, _| Ok(file.push(image)?))?;
+            let mut file = GifWriter::create(out, size)?;
+            each(film, report, |image, shown| Ok(file.push(image, shown.seconds)?))?;
             file.finish()?;
         }
         OutputKind::Film => {
@@ -67,14 +67,14 @@ pub fn write<R: Read + Seek>(
             file.commit().with_context(unwritten)?;
         }
         OutputKind::Sequence => {
-            each(film, report, |image, frame| {
-                let out = numbered(out, frame);
+            each(film, report, |image, shown| {
+                let out = numbered(out, shown.frame);
                 Ok(if is_exr(&out) { image.write_exr(out) } else { image.write_png_fast(out) }?)
             })?;
         }
         OutputKind::Still | OutputKind::AnimatedPng => {
-            let mut file = AnimationWriter::create(out, size, film.fps())?;
-            each(film, report, |image, _| Ok(file.push(image)?))?;
+            let mut file = AnimationWriter::create(out, size)?;
+            each(film, report, |image, shown| Ok(file.push(image, shown.seconds)?))?;
             file.finish()?;
         }
     }
@@ -103,16 +103,22 @@ pub fn is_exr(out: &Path) -> bool {
     out.extension().is_some_and(|end| end.eq_ignore_ascii_case("exr"))
 }
 
+/// When a picture is shown.
+struct Shown {
+    frame: i32,
+    seconds: f64,
+}
+
 /// Draws each picture, and passes it to `take` in another thread, which encodes it while the next one is drawn.
 fn each<R: Read + Seek>(
     film: &mut Film<R>,
     report: &mut dyn FnMut(f64),
-    mut take: impl FnMut(&Image, i32) -> Result<()> + Send,
+    mut take: impl FnMut(&Image, &Shown) -> Result<()> + Send,
 ) -> Result<()> {
-    let (pictures, drawn) = mpsc::sync_channel::<(Image, i32)>(1);
+    let (pictures, drawn) = mpsc::sync_channel::<(Image, Shown)>(1);
     thread::scope(|scope| {
-        let taker = scope.spawn(move || drawn.iter().try_for_each(|(image, frame)| take(&image, frame)));
-        let sent = draw_all(film, report, |image, frame| pictures.send((image, frame)).is_ok());
+        let taker = scope.spawn(move || drawn.iter().try_for_each(|(image, shown)| take(&image, &shown)));
+        let sent = draw_all(film, report, |image, shown| pictures.send((image, shown)).is_ok());
         drop(pictures);
         let taken = taker.join().expect("a writer does not panic");
         // Ctrl-C reaches ffmpeg too, whose end then is no error of its own.
@@ -128,13 +134,14 @@ fn each<R: Read + Seek>(
 fn draw_all<R: Read + Seek>(
     film: &mut Film<R>,
     report: &mut dyn FnMut(f64),
-    mut give: impl FnMut(Image, i32) -> bool,
+    mut give: impl FnMut(Image, Shown) -> bool,
 ) -> Result<()> {
     for place in 0..film.len() {
         if process::is_interrupted() {
             bail!(Interrupted);
         }
-        if !give(film.picture(place)?, film.frame(place)) {
+        let shown = Shown { frame: film.frame(place), seconds: film.duration(place) };
+        if !give(film.picture(place)?, shown) {
             break;
         }
         report((place + 1) as f64 / film.len() as f64);
@@ -164,10 +171,13 @@ fn encode<R: Read + Seek>(
     size: [u32; 2],
     report: &mut dyn FnMut(f64),
 ) -> Result<()> {
-    let mut ffmpeg = start_ffmpeg(out, muxer, size, film.fps())?;
+    let fps = film.fps();
+    let mut ffmpeg = start_ffmpeg(out, muxer, size, fps)?;
     let mut pipe = ffmpeg.stdin.take().context("ffmpeg has no standard input")?;
-    let sent = each(film, report, |image, _| {
-        pipe.write_all(image.bytes()).context("ffmpeg stopped before the last picture")
+    let sent = each(film, report, |image, shown| {
+        let mut ticks = 0..(shown.seconds * fps).round() as usize;
+        let sent = ticks.try_for_each(|_| pipe.write_all(image.bytes()));
+        sent.context("ffmpeg stopped before the last picture")
     });
     drop(pipe);
     let mut said = String::new();

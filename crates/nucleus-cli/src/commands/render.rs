@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use nucleus_cache::Playback;
-use nucleus_view::{Background, Camera, Colouring, Film, Image, Style};
+use nucleus_view::{Background, Camera, Colouring, Film, GifWriter, Image, Style};
 
 use super::film::{self, Interrupted, OutputKind};
 use crate::diagnostics::unknown;
@@ -167,14 +167,25 @@ impl Render {
         }
         let camera = self.with_options(film.camera())?;
         let mut film = look_through(film.seen_by(camera), scene_camera);
+        let recorded = film.len();
+        if kind == OutputKind::Gif {
+            film = film.at_most(GifWriter::MAX_FPS);
+        }
         let mut progress = ShareProgress::new("drawing");
         let result = film::write(&mut film, out, kind, self.size, &mut |share| progress.show(share));
         progress.end();
         let place = result?;
-        let count = figures::count(film.len(), "frame");
+        let count = match film.len() {
+            all if all == recorded => figures::count(all, "frame"),
+            some => format!("{some} of {}", figures::count(recorded, "frame")),
+        };
+        let note = match film.len() < recorded {
+            true => format!("; a GIF shows at most {} pictures a second", GifWriter::MAX_FPS),
+            false => String::new(),
+        };
         Ok(match kind {
             OutputKind::Sequence => format!("{count} in `{}`", place.display()),
-            _ => format!("{count} in {}", sized(out)?),
+            _ => format!("{count} in {}{note}", sized(out)?),
         })
     }
 

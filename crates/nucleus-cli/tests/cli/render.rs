@@ -25,6 +25,35 @@ fn a_frame_becomes_a_png_of_the_requested_size() {
 }
 
 #[test]
+fn a_hash_in_the_name_of_the_cache_is_no_frame_number() {
+    let folder = folder();
+    fs::rename(cache(folder.path()), folder.path().join("take#2.mcap")).unwrap();
+    for more in [&["--animate"][..], &[]] {
+        let output = nucleus(folder.path(), &[&["render", "take#2.mcap", "--size", "64x48"], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        assert_eq!(names, ["take#2.mcap", "take#2.png"]);
+        assert_eq!(png(&folder.path().join("take#2.png")).1.is_some(), !more.is_empty());
+    }
+}
+
+#[test]
+fn a_gif_of_a_high_frame_rate_says_that_it_has_fewer_pictures() {
+    let folder = folder();
+    let text = include_str!("../../src/commands/templates/drape.ron").replace("fps: 24", "fps: 60");
+    fs::write(folder.path().join("drape.ron"), text).unwrap();
+    let run = nucleus(folder.path(), &["run", "drape.ron", "--frames", "6"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let output = nucleus(folder.path(), &["render", "drape.mcap", "--size", "64x48", "-o", "a.gif"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stdout(&output);
+    assert!(said.starts_with("3 of 6 frames in `a.gif`"), "{said}");
+    assert!(said.ends_with("; a GIF shows at most 50 pictures a second\n"), "{said}");
+}
+
+#[test]
 fn a_run_becomes_an_animated_png_of_every_nth_frame() {
     let folder = folder();
     cache(folder.path());

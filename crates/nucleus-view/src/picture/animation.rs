@@ -24,30 +24,30 @@ pub struct AnimationWriter {
 const UNKNOWN_COUNT: u32 = i32::MAX as u32;
 
 impl AnimationWriter {
-    /// Starts a file for frames of `size` pixels, `fps` per second.
+    /// Starts a file for frames of `size` pixels.
     ///
     /// # Errors
     /// If the file cannot be created.
-    pub fn create(path: impl AsRef<Path>, size: [u32; 2], fps: f64) -> Result<Self, ViewError> {
+    pub fn create(path: impl AsRef<Path>, size: [u32; 2]) -> Result<Self, ViewError> {
         let path = path.as_ref();
         let (file, handle) = open(path)?;
         let encoder =
-            start(BufWriter::new(handle), size, fps).map_err(|source| ViewError::encode(path, source))?;
+            start(BufWriter::new(handle), size).map_err(|source| ViewError::encode(path, source))?;
         Ok(Self { file, size, encoder, last: None, frames: 0 })
     }
 
-    /// Adds a frame.
+    /// Adds a frame that is shown for some seconds.
     ///
     /// # Errors
     /// If it has another size than the file, or cannot be written.
-    pub fn push(&mut self, image: &Image) -> Result<(), ViewError> {
+    pub fn push(&mut self, image: &Image, seconds: f64) -> Result<(), ViewError> {
         if image.size() != self.size {
             let (expected, found) = (self.size, image.size());
             return Err(ViewError::FrameSize { path: self.file.destination().into(), expected, found });
         }
         let changed =
             self.last.as_ref().map_or([0, 0, self.size[0], self.size[1]], |last| changed(last, image));
-        self.write_part(image, changed)
+        self.write_part(image, changed, seconds)
             .map_err(|source| ViewError::encode(self.file.destination(), source))?;
         self.last = Some(image.clone());
         self.frames += 1;
@@ -69,13 +69,15 @@ impl AnimationWriter {
         counted.and_then(|()| file.commit()).map_err(|source| ViewError::Create { path, source })
     }
 
-    fn write_part(&mut self, image: &Image, part: [u32; 4]) -> Result<(), png::EncodingError> {
+    fn write_part(&mut self, image: &Image, part: [u32; 4], seconds: f64) -> Result<(), png::EncodingError> {
         let [left, top, width, height] = part;
         if self.frames > 0 {
             self.encoder.reset_frame_position()?;
             self.encoder.set_frame_dimension(width, height)?;
             self.encoder.set_frame_position(left, top)?;
         }
+        let (numerator, denominator) = delay(seconds);
+        self.encoder.set_frame_delay(numerator, denominator)?;
         let row_bytes = 3 * self.size[0] as usize;
         let columns = 3 * left as usize..3 * (left + width) as usize;
         let rows = image.bytes().chunks_exact(row_bytes).skip(top as usize).take(height as usize);
@@ -97,16 +99,22 @@ fn open(path: &Path) -> Result<(AtomicFile, File), ViewError> {
 fn start(
     file: BufWriter<File>,
     [width, height]: [u32; 2],
-    fps: f64,
 ) -> Result<png::Writer<BufWriter<File>>, png::EncodingError> {
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::Balanced);
     encoder.set_animated(UNKNOWN_COUNT, 0)?;
-    // The delay is a fraction of two 16-bit numbers, 60 / (frames per minute).
-    let per_minute = (fps * 60.0).clamp(60.0, 60_000.0).round() as u16;
-    encoder.set_frame_delay(60, per_minute)?;
     encoder.write_header()
+}
+
+/// A duration in seconds as a fraction of two 16-bit numbers.
+fn delay(seconds: f64) -> (u16, u16) {
+    match seconds {
+        // The rates of films are whole numbers of frames per minute.
+        ..=1.0 => (60, (60.0 / seconds).clamp(60.0, 60_000.0).round() as u16),
+        ..=65.0 => ((seconds * 1000.0).round() as u16, 1000),
+        _ => (seconds.round() as u16, 1),
+    }
 }
 
 /// Left, top, width and height of the rectangle that differs between two pictures of one size; one pixel if none does.
@@ -154,8 +162,6 @@ pub struct GifWriter {
     file: AtomicFile,
     size: [u32; 2],
     encoder: gif::Encoder<BufWriter<File>>,
-    /// Duration of a frame, in hundredths of a second.
-    delay: f64,
     /// Rounding error of the durations so far, in hundredths of a second.
     rounding: f64,
     frames: u32,
@@ -165,11 +171,14 @@ pub struct GifWriter {
 const QUANTISER_SPEED: i32 = 10;
 
 impl GifWriter {
-    /// Starts a file for frames of `size` pixels, `fps` per second.
+    /// The most frames per second: many viewers show a frame of less than two hundredths of a second for longer.
+    pub const MAX_FPS: f64 = 50.0;
+
+    /// Starts a file for frames of `size` pixels.
     ///
     /// # Errors
     /// If the file cannot be created, or a side exceeds 65,535 pixels.
-    pub fn create(path: impl AsRef<Path>, size: [u32; 2], fps: f64) -> Result<Self, ViewError> {
+    pub fn create(path: impl AsRef<Path>, size: [u32; 2]) -> Result<Self, ViewError> {
         let path = path.as_ref();
         let failed = |source| ViewError::Gif { path: path.into(), source };
         let [Ok(width), Ok(height)] = size.map(u16::try_from) else {
@@ -182,14 +191,14 @@ impl GifWriter {
                 Ok(encoder)
             });
         let encoder = encoder.map_err(failed)?;
-        Ok(Self { file, size, encoder, delay: 100.0 / fps.max(1e-3), rounding: 0.0, frames: 0 })
+        Ok(Self { file, size, encoder, rounding: 0.0, frames: 0 })
     }
 
-    /// Adds a frame.
+    /// Adds a frame that is shown for some seconds.
     ///
     /// # Errors
     /// If it has another size than the file, or cannot be written.
-    pub fn push(&mut self, image: &Image) -> Result<(), ViewError> {
+    pub fn push(&mut self, image: &Image, seconds: f64) -> Result<(), ViewError> {
         if image.size() != self.size {
             let (expected, found) = (self.size, image.size());
             return Err(ViewError::FrameSize { path: self.file.destination().into(), expected, found });
@@ -197,8 +206,9 @@ impl GifWriter {
         let [width, height] = self.size.map(|side| side as u16);
         let mut frame = gif::Frame::from_rgb_speed(width, height, image.bytes(), QUANTISER_SPEED);
         // The rounding error is carried to the next frame, so that errors do not add up.
-        let delay = (self.delay + self.rounding).round().clamp(2.0, 65_535.0);
-        self.rounding += self.delay - delay;
+        let exact = 100.0 * seconds + self.rounding;
+        let delay = exact.round().clamp(100.0 / Self::MAX_FPS, 65_535.0);
+        self.rounding = exact - delay;
         frame.delay = delay as u16;
         self.frames += 1;
         let written = self.encoder.write_frame(&frame);

@@ -31,7 +31,6 @@ pub struct Film<'a, R> {
     cache: &'a mut Playback<R>,
     /// The recorded times that are shown, as indices into the cache.
     moments: Vec<usize>,
-    fps: f64,
     camera: Camera,
     /// A camera of the scene that replaces `camera`.
     scene_camera: Option<nucleus_cache::Camera>,
@@ -67,22 +66,10 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         let camera = Camera::framing(&framed, style.size);
         let is_ground_plane = style.ground == Ground::Below;
         let ground = if is_ground_plane { floor } else { style.ground };
-        let fps = cache.run().frames_per_second / every as f64;
         let style = Style { ground, ..style };
         let (scene_camera, fragments) = (None, Vec::new());
         let spacings = spacings(cache, style.surfaces).map_err(|source| ViewError::Read { source })?;
-        Ok(Self {
-            cache,
-            moments,
-            fps,
-            camera,
-            scene_camera,
-            stage,
-            style,
-            is_ground_plane,
-            spacings,
-            fragments,
-        })
+        Ok(Self { cache, moments, camera, scene_camera, stage, style, is_ground_plane, spacings, fragments })
     }
 
     /// Keeps the frames from `first` to `last`; the camera stays that of the whole run.
@@ -95,9 +82,35 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         if self.moments.is_empty() { Err(ViewError::NoRecordedFrame) } else { Ok(self) }
     }
 
-    /// Pictures per second.
+    /// Keeps at most `fps` pictures per second. Each is shown until the next one that is kept.
+    pub fn at_most(mut self, fps: f64) -> Self {
+        let frames = (self.cache.run().frames_per_second / fps - 1e-6).ceil() as i64;
+        let moments = self.cache.time_samples();
+        let mut last = None;
+        self.moments.retain(|&moment| {
+            let frame = i64::from(moments[moment].frame);
+            let is_kept = last.is_none_or(|last| frame - last >= frames);
+            last = if is_kept { Some(frame) } else { last };
+            is_kept
+        });
+        self
+    }
+
+    /// The lowest constant rate, in ticks per second, at which every picture is shown for a whole number of ticks.
     pub fn fps(&self) -> f64 {
-        self.fps
+        let frames_per_tick = (0..self.len()).map(|index| self.frames_shown(index)).fold(0, gcd);
+        self.cache.run().frames_per_second / frames_per_tick as f64
+    }
+
+    /// For how many seconds a picture is shown: until the next one; the last one as long as the one before.
+    pub fn duration(&self, index: usize) -> f64 {
+        self.frames_shown(index) as f64 / self.cache.run().frames_per_second
+    }
+
+    /// For how many frames of the run a picture is shown; one if it is the only picture.
+    fn frames_shown(&self, index: usize) -> u64 {
+        let begin = index.min(self.len().saturating_sub(2));
+        (i64::from(self.frame(begin + 1)) - i64::from(self.frame(begin))).max(1) as u64
     }
 
     /// The camera of all pictures, unless a camera of the scene replaces it.
@@ -192,12 +205,16 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// # Errors
     /// If a frame is damaged or the file cannot be written.
     pub fn write(&mut self, path: impl AsRef<Path>) -> Result<(), ViewError> {
-        let mut file = AnimationWriter::create(path, self.style.size, self.fps)?;
+        let mut file = AnimationWriter::create(path, self.style.size)?;
         for index in 0..self.len() {
-            file.push(&self.picture(index)?)?;
+            file.push(&self.picture(index)?, self.duration(index))?;
         }
         file.finish()
     }
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 /// The space that a run takes up.
@@ -210,7 +227,7 @@ struct Survey {
     floor: Ground,
 }
 
-/// Surveys a run at these recorded times.
+/// Surveys a run at these recorded times. Damaged frames are left out, unless all are: others can be drawn without them.
 fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<Survey, ViewError> {
     let [mut framed, mut stage, mut all] = [Bounds::default(); 3];
     for moment in moments {

@@ -52,6 +52,10 @@ pub struct Sample {
     pub blown: bool,
     /// There is no flag.
     pub bare: bool,
+    /// Only every such frame is recorded, and the last one; 0 is every frame.
+    pub every: u32,
+    /// Frames per second; 0 is 24.
+    pub fps: u32,
 }
 
 fn hoist() -> SelectedPoints {
@@ -84,7 +88,12 @@ pub fn begin(path: &Path, sample: Sample) -> Recorder {
             }
             None => Vec::new(),
         },
-        detail: if sample.substeps { Detail::Substeps } else { Detail::Frames },
+        detail: match (sample.substeps, sample.every) {
+            (true, _) => Detail::Substeps,
+            (_, 0) => Detail::Frames,
+            (_, every) => Detail::Every(every),
+        },
+        frames_per_second: f64::from(if sample.fps == 0 { 24 } else { sample.fps }),
         ..RunInfo::default()
     };
     let run = RunInfo { cameras: sample.camera.then(camera).into_iter().collect(), ..run };
