@@ -17,9 +17,9 @@ pub fn error(text: &str) -> Result<f64, String> {
         None => (text, 1.0),
     };
     match number.trim().parse::<f64>() {
-        // Above 1 the percent sign was most likely forgotten.
-        Ok(x) if x > 1.0 && x.is_finite() && scale == 1.0 => {
-            Err(format!("{x} means {} %: write `{x}%`", 100.0 * x))
+        // From 1 on the percent sign was most likely forgotten.
+        Ok(x) if x >= 1.0 && x.is_finite() && scale == 1.0 => {
+            Err(format!("{x} means {0} %: write `{x}%`, or `{0}%` if that is meant", 100.0 * x))
         }
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x * scale),
         Ok(_) => Err("an error must be above 0".to_owned()),
@@ -101,8 +101,9 @@ mod tests {
     fn errors_are_percent_or_shares_and_times_milliseconds_or_seconds() {
         assert_eq!([error("1%"), error(" 0.5 % "), error("0.01")], [Ok(0.01), Ok(0.005), Ok(0.01)]);
         assert_eq!([time("30ms"), time("30"), time("0.5s")], [Ok(30.0), Ok(30.0), Ok(500.0)]);
-        assert_eq!(error("2").unwrap_err(), "2 means 200 %: write `2%`");
-        assert_eq!([error("1"), error("150%")], [Ok(1.0), Ok(1.5)]);
+        assert_eq!(error("2").unwrap_err(), "2 means 200 %: write `2%`, or `200%` if that is meant");
+        assert!(error("1").unwrap_err().starts_with("1 means 100 %: write `1%`"));
+        assert_eq!([error("0.99"), error("100%"), error("150%")], [Ok(0.99), Ok(1.0), Ok(1.5)]);
         for text in ["0%", "-1%", "nan", "inf", "much", ""] {
             assert!(error(text).is_err() && time(text).is_err(), "{text}");
         }

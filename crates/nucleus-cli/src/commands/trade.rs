@@ -335,9 +335,10 @@ impl Trade {
             output::report_json(&json);
         } else {
             let names = files.map(|(end, _)| format!("`{}`", path(end).display()));
-            let said = format!("{}\n{recommendation}", report::text(trade));
+            output::report(&format!("{}\n", report::text(trade)));
+            output::report_always(&recommendation);
             let more = if self.wishes().is_refined() { MORE } else { "" };
-            output::report(&format!("{said}{more}wrote {}\n", names.join(", ")));
+            output::report(&format!("{more}wrote {}\n", names.join(", ")));
         }
         match (&self.apply, &choice) {
             (Some(apply), Choice::Found(point) | Choice::Nearest(point)) => {
