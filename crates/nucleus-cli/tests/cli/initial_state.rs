@@ -246,12 +246,30 @@ fn an_initial_state_is_converted_between_space_scales() {
     scene(folder.path(), 4, "");
     run(folder.path(), &["-o", "whole.mcap"]);
     let text = fs::read_to_string(folder.path().join("drape.ron")).unwrap();
-    fs::write(folder.path().join("drape.ron"), text.replace("spaceScale: 0.01", "spaceScale: 0.02")).unwrap();
+    let other_unit = text.replace("spaceScale: 0.01", "spaceScale: 0.02");
+    let halves = [("width: 50, height: 50", "width: 25, height: 25"), ("(0, 25, 0)", "(0, 12.5, 0)")];
+    let converted = halves.iter().fold(other_unit, |text, (from, to)| text.replace(from, to));
+    fs::write(folder.path().join("drape.ron"), converted).unwrap();
     let output = run(folder.path(), &["--from", "whole.mcap@4", "--frames", "1", "-o", "rest.mcap"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let ((now, _), (then, _)) = (state(folder.path(), "rest.mcap", 1), state(folder.path(), "whole.mcap", 4));
     let halved: Vec<[f32; 3]> = then.iter().map(|p| p.map(|x| x / 2.0)).collect();
     assert!(farthest(&now, &halved) < 1e-5);
+}
+
+#[test]
+fn an_initial_state_in_another_unit_than_an_unchanged_mesh_is_refused() {
+    let folder = folder();
+    scene(folder.path(), 4, "");
+    run(folder.path(), &["-o", "whole.mcap"]);
+    let text = fs::read_to_string(folder.path().join("drape.ron")).unwrap();
+    fs::write(folder.path().join("drape.ron"), text.replace("spaceScale: 0.01", "spaceScale: 1")).unwrap();
+    let output = run(folder.path(), &["--from", "whole.mcap@4", "--frames", "1", "-o", "rest.mcap"]);
+    assert_refused(
+        &output,
+        "the unit of length has changed, and `cloth1` has not: `whole.mcap` has 100 units per metre, and the scene 1, so in \
+         metres the mesh is 100 times as large in the scene; give the scene the `spaceScale` 0.01 of the cache",
+    );
 }
 
 #[test]
