@@ -20,7 +20,7 @@ pub struct Selection {
     pub every: u32,
     /// Whether recorded substeps become samples too.
     pub substeps: bool,
-    /// Factor on all lengths, applied after the conversion to the unit of the format.
+    /// Factor on all lengths: the file has another unit of length, and the size in metres is kept.
     pub scale: f64,
     /// Whether particles become a mesh of their surface, in formats of a file per sample.
     pub surface: bool,
@@ -224,12 +224,12 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         self.cache.run().frames_per_second
     }
 
-    /// Scene units per metre.
+    /// Exported units per metre.
     pub fn units_per_metre(&self) -> f64 {
-        self.cache.run().units_per_metre
+        self.cache.run().units_per_metre * self.scale
     }
 
-    /// Metres per scene unit. The reciprocal of a rounded reciprocal may be off in its last digit, so the shorter number is
+    /// Metres per exported unit. The reciprocal of a rounded reciprocal may be off in its last digit, so the shorter number is
     /// taken if both have the same reciprocal.
     pub fn metres_per_unit(&self) -> f64 {
         let units = self.units_per_metre();
@@ -243,9 +243,16 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         if path.is_empty() { "a Nucleus run".to_owned() } else { format!("a Nucleus run of {path}") }
     }
 
-    /// Converts all lengths from scene units to metres.
-    pub(crate) fn in_metres(&mut self) {
-        self.scale /= self.units_per_metre();
+    /// Converts all lengths from scene units to metres, the only unit of a format.
+    ///
+    /// # Errors
+    /// When another unit is wanted.
+    pub(crate) fn in_metres(&mut self, format: &'static str) -> Result<(), ExportError> {
+        if self.scale != 1.0 {
+            return Err(ExportError::FixedUnit { format });
+        }
+        self.scale = 1.0 / self.units_per_metre();
+        Ok(())
     }
 
     /// Whether any position of an object differs from the first sample. Reads every sample.

@@ -105,6 +105,12 @@ pub enum ExportError {
         /// The format.
         format: &'static str,
     },
+    /// Another unit of length is wanted, and the format is in metres.
+    #[error("{format} is in metres by its specification, so a scale has no effect; write usda, usdc or obj")]
+    FixedUnit {
+        /// The format.
+        format: &'static str,
+    },
     /// A quantity exceeds the limit of the format.
     #[error("{quantity} is more than {format} can hold; export fewer frames, or write usda")]
     TooLarge {

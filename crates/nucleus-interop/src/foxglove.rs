@@ -19,7 +19,7 @@ pub(crate) fn write<R: Read + Seek>(
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    clip.in_metres();
+    clip.in_metres("foxglove")?;
     let mut file = output.file(out.to_owned())?;
     let mut topics = TopicFile::to_writer(&mut file)?;
     let types = file_descriptor_set();

@@ -30,7 +30,7 @@ pub(crate) fn write<R: Read + Seek>(
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    clip.in_metres();
+    clip.in_metres("glb")?;
     let (text, length, moving) = describe(clip, &mut |share| progress(0.5 * share))?;
     let mut file = output.file(out.to_owned())?;
     let text = padded(text.to_string().into_bytes(), b' ');

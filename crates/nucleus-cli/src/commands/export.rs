@@ -41,7 +41,8 @@ pub struct Export {
     /// Export only this object; may be given several times.
     #[arg(long, value_name = "NAME")]
     object: Vec<String>,
-    /// Factor for all lengths.
+    /// Factor for all lengths, to convert them to another unit: 0.01 makes metres of centimetres. The real size is kept, so
+    /// the unit that usda and usdc state changes with it; glb and foxglove are always in metres and take none.
     #[arg(long, default_value_t = 1.0, value_parser = options::positive)]
     scale: f64,
     /// Export the surface of particles as a mesh (obj, ply): for liquids.
