@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use nucleus_cache::{ObjectKind, OpenError, Playback, shell_word};
+use nucleus_cache::{ObjectKind, OpenError, Playback, ReadError, shell_word};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::first_frame_warnings;
 use nucleus_graph::memory::Memory;
@@ -178,6 +178,22 @@ pub fn open_cache(path: &Path) -> Result<Playback> {
         OpenError::Io { .. } | OpenError::Folder { .. } => anyhow!(error),
         other => anyhow!(other).context(format!("cannot open `{}`", path.display())),
     })
+}
+
+/// An error about a cache, with the remedy where a frame of it is damaged. `option` selects other frames.
+pub fn with_remedy(error: anyhow::Error, path: &Path, option: &str) -> anyhow::Error {
+    let is_damage = |cause: &(dyn std::error::Error + 'static)| {
+        cause
+            .downcast_ref()
+            .is_some_and(|cause| matches!(cause, ReadError::Damaged { .. } | ReadError::MeshLost { .. }))
+    };
+    if !error.chain().any(is_damage) {
+        return error;
+    }
+    anyhow!(
+        "{error:#}; `{option}` selects other frames, and `nucleus recover {}` writes the intact ones as another cache",
+        shell_word(path)
+    )
 }
 
 /// Opens a cache and prints a warning if parts of it are lost.

@@ -91,6 +91,12 @@ pub enum ViewError {
 }
 
 impl ViewError {
+    /// Whether a frame of the cache is damaged or lost, which does not concern the other frames.
+    pub(crate) fn is_damage(&self) -> bool {
+        let Self::Read { source } = self else { return false };
+        !matches!(source, ReadError::Io(_))
+    }
+
     /// A PNG that could not be encoded or written. An error of the system becomes the source, which the encoder's error
     /// does not name.
     pub(crate) fn encode(path: impl Into<PathBuf>, source: png::EncodingError) -> Self {

@@ -94,7 +94,7 @@ fn an_animation_plays_in_real_time() {
 }
 
 #[test]
-fn a_damaged_frame_is_an_error() {
+fn a_damaged_frame_is_an_error_of_its_own_picture() {
     let (folder, _) = recorded(Sample::default());
     let path = folder.path().join("run.mcap");
     let mut bytes = std::fs::read(&path).unwrap();
@@ -102,7 +102,62 @@ fn a_damaged_frame_is_an_error() {
     bytes[middle] ^= 0xFF;
     std::fs::write(&path, bytes).unwrap();
     let mut cache = Playback::open(&path).unwrap();
-    assert!(matches!(Film::of(&mut cache, 1, small()), Err(ViewError::Read { .. })));
+    let mut film = Film::of(&mut cache, 1, small()).unwrap();
+    let pictures: Vec<_> = (0..film.len()).map(|place| film.picture(place)).collect();
+    let damaged = pictures.iter().filter(|picture| picture.is_err()).count();
+    assert_eq!(damaged, 1, "of {} pictures", pictures.len());
+    let error = pictures.into_iter().find_map(Result::err).unwrap();
+    assert!(matches!(error, ViewError::Read { .. }), "{error}");
+}
+
+fn write_gif(film: &mut Film<impl std::io::Read + std::io::Seek>, path: &std::path::Path) {
+    let mut file = GifWriter::create(path, small().size).unwrap();
+    for place in 0..film.len() {
+        file.push(&film.picture(place).unwrap(), film.duration(place)).unwrap();
+    }
+    file.finish().unwrap();
+}
+
+/// The durations of the frames of a GIF, in hundredths of a second.
+fn gif_delays(path: &std::path::Path) -> Vec<u16> {
+    let mut decoder = gif::DecodeOptions::new().read_info(std::fs::File::open(path).unwrap()).unwrap();
+    std::iter::from_fn(|| decoder.read_next_frame().unwrap().map(|frame| frame.delay)).collect()
+}
+
+/// The durations of the frames of an animated PNG, in seconds.
+fn png_delays(path: &std::path::Path) -> Vec<f64> {
+    let bytes = std::fs::read(path).unwrap();
+    let half = |at: usize| f64::from(u16::from_be_bytes([bytes[at], bytes[at + 1]]));
+    let chunks = (0..bytes.len() - 4).filter(|at| &bytes[*at..at + 4] == b"fcTL");
+    chunks.map(|at| half(at + 24) / half(at + 26)).collect()
+}
+
+#[test]
+fn pictures_of_frames_recorded_at_intervals_are_shown_until_the_next_one() {
+    let (folder, mut cache) = recorded(Sample { every: 10, ..Sample::default() });
+    let path = folder.path().join("film");
+    let mut film = Film::of(&mut cache, 1, small()).unwrap();
+    assert_eq!((0..film.len()).map(|place| film.frame(place)).collect::<Vec<_>>(), [1, 11, 21, 24]);
+    assert_eq!(film.fps(), 24.0, "1 is the greatest common divisor of 10 and 3");
+    write_gif(&mut film, &path);
+    // 10/24 s, 10/24 s, and 3/24 s for both ends of the last gap.
+    assert_eq!(gif_delays(&path), [42, 41, 13, 12]);
+    film.write(&path).unwrap();
+    assert_eq!(png_delays(&path), [10.0 / 24.0, 10.0 / 24.0, 3.0 / 24.0, 3.0 / 24.0]);
+}
+
+#[test]
+fn a_gif_of_a_high_frame_rate_has_fewer_pictures_and_plays_in_real_time() {
+    for (fps, pictures) in [(50, 24), (60, 12), (120, 8)] {
+        let (folder, mut cache) = recorded(Sample { fps, ..Sample::default() });
+        let path = folder.path().join("film.gif");
+        let mut film = Film::of(&mut cache, 1, small()).unwrap().at_most(GifWriter::MAX_FPS);
+        write_gif(&mut film, &path);
+        let delays = gif_delays(&path);
+        assert_eq!(delays.len(), pictures, "at {fps} frames per second");
+        assert!(delays.iter().all(|delay| *delay >= 2), "{delays:?}");
+        assert_eq!(u32::from(delays.iter().sum::<u16>()), 2400 / fps, "24 frames at {fps} per second");
+    }
 }
 
 #[test]

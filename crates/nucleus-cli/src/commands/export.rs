@@ -125,7 +125,7 @@ impl Export {
             // Only a folder without files can be removed so.
             let _ = std::fs::remove_dir(&out);
         }
-        let exported = exported?;
+        let exported = exported.map_err(|error| files::with_remedy(error.into(), &self.file, "--frames"))?;
         let sizes = exported.files.iter().map(|file| Ok(std::fs::metadata(file)?.len()));
         let bytes: u64 = sizes.sum::<std::io::Result<u64>>()?;
         output::report(&format!(

@@ -96,13 +96,15 @@ impl Render {
             "a film has no opacities; `--background none` is for a .png or .exr, or for pictures as `frames/####.png`"
         );
         let drawn = match kind {
-            OutputKind::Still => self.still(&mut cache, &out)?,
+            OutputKind::Still => self
+                .still(&mut cache, &out)
+                .map_err(|error| files::with_remedy(error, &self.file, "--frame"))?,
             kind => {
                 process::listen_for_signals()?;
                 match self.film(&mut cache, &out, kind) {
                     // Unfinished files are removed on the way here.
                     Err(error) if error.is::<Interrupted>() => return Ok(Outcome::Interrupted),
-                    drawn => drawn?,
+                    drawn => drawn.map_err(|error| files::with_remedy(error, &self.file, "--frames"))?,
                 }
             }
         };

@@ -154,6 +154,36 @@ fn a_damaged_frame_is_reported_by_info_and_once_by_recover() {
 }
 
 #[test]
+fn the_error_of_a_damaged_frame_names_the_remedies() {
+    let folder = folder();
+    let path = cache(folder.path());
+    damage_a_frame(&path);
+    let words = "`--frames` selects other frames, and `nucleus recover fall.mcap` writes the intact ones as another cache";
+    let export = ["export", "fall.mcap", "--as", "obj"];
+    let output = nucleus(folder.path(), &export);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains(words), "{}", stderr(&output));
+    let render = ["render", "fall.mcap", "--size", "64x48", "-o", "a.gif"];
+    let output = nucleus(folder.path(), &render);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains(words), "{}", stderr(&output));
+    let said = stderr(&output);
+    let damaged: i32 = said
+        .rsplit("error: ")
+        .next()
+        .unwrap()
+        .split("frame ")
+        .nth(1)
+        .and_then(|after| after.split(' ').next())
+        .unwrap()
+        .parse()
+        .unwrap();
+    let others = if damaged > 3 { format!("1..{}", damaged - 1) } else { format!("{}..6", damaged + 1) };
+    let output = nucleus(folder.path(), &[&render[..], &["--frames", &others]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(nucleus(folder.path(), &["recover", "fall.mcap"]).status.code(), Some(1));
+    assert!(folder.path().join("fall.recovered.mcap").exists());
+}
+
+#[test]
 fn a_cache_whose_first_byte_is_damaged_is_recovered_completely() {
     let folder = folder();
     let path = cache(folder.path());

@@ -49,7 +49,7 @@ impl<'a, R: Read + Seek> Film<'a, R> {
     /// The ends of every `every`th frame of a run. The camera frames the cloth, with the colliders near it, over all of them.
     ///
     /// # Errors
-    /// If one of these frames is damaged, or the cache has none.
+    /// If all of these frames are damaged, or the cache has none.
     pub fn of(cache: &'a mut Playback<R>, every: usize, style: Style) -> Result<Self, ViewError> {
         let every = every.max(1);
         let ends =
@@ -230,12 +230,22 @@ struct Survey {
 /// Surveys a run at these recorded times. Damaged frames are left out, unless all are: others can be drawn without them.
 fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<Survey, ViewError> {
     let [mut framed, mut stage, mut all] = [Bounds::default(); 3];
+    let mut damaged = None;
     for moment in moments {
-        let states = states(cache, *moment)?;
+        let states = match states(cache, *moment) {
+            Err(error) if error.is_damage() => {
+                damaged = Some(error);
+                continue;
+            }
+            states => states?,
+        };
         let objects = objects(cache, *moment, &states)?;
         framed.merge(&Bounds::to_frame(&objects));
         stage.merge(&Bounds::of_interest(&objects));
         objects.iter().for_each(|object| all.include_object(object));
+    }
+    if let Some(error) = damaged.filter(|_| framed == Bounds::default()) {
+        return Err(error);
     }
     Ok(Survey { framed, stage, floor: Ground::At(all.floor_below(&framed, &stage)) })
 }
