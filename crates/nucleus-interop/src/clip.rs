@@ -188,6 +188,20 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         found.fit(info.rest.len(), info.faces.corners().len()).then_some(found)
     }
 
+    /// The texture coordinates of an object at a sample, where they fit its mesh.
+    ///
+    /// # Errors
+    /// When the frame that holds the mesh is damaged.
+    pub(crate) fn texture_coordinates_at(
+        &mut self,
+        object: usize,
+        sample: usize,
+    ) -> Result<Option<TextureCoordinates>, ExportError> {
+        let uvs = self.texture_coordinates(object).cloned();
+        let object = self.object_at(object, sample)?;
+        Ok(uvs.filter(|uvs| uvs.fit(object.rest.len(), object.faces.corners().len())))
+    }
+
     /// The cameras of the run.
     pub fn cameras(&self) -> &[Camera] {
         &self.cache.run().cameras

@@ -4,9 +4,9 @@ use std::io::{Read, Seek};
 use std::path::Path;
 
 use nucleus_cache::{LiquidSurface, ObjectInfo, TextureCoordinates};
-use nucleus_core::Faces;
+use nucleus_core::{Faces, Particle};
 
-use crate::clip::{Clip, Sample};
+use crate::clip::{Clip, PARTICLE_FACTS, Sample};
 use crate::error::ExportError;
 use crate::materials;
 use crate::output::{OutFile, Output, file_names};
@@ -19,9 +19,9 @@ pub(crate) fn write_obj<R: Read + Seek>(
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
     write_obj_materials(clip, folder, output)?;
-    each_file(clip, folder, "obj", output, progress, |file, object, positions, uvs| {
+    each_file(clip, folder, "obj", output, progress, |file, mesh| {
         file.text(format!("mtllib {OBJ_MATERIALS}\n"));
-        write_obj_mesh(file, object, positions, uvs);
+        write_obj_mesh(file, mesh.object, &mesh.positions, mesh.uvs.as_ref());
     })
 }
 
@@ -47,6 +47,15 @@ fn obj_name(name: &str) -> String {
     name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect()
 }
 
+/// An object at a sample.
+struct MeshSample<'a> {
+    object: &'a ObjectInfo,
+    positions: Vec<[f32; 3]>,
+    uvs: Option<TextureCoordinates>,
+    velocities: Option<Vec<[f32; 3]>>,
+    particles: Option<Vec<Particle>>,
+}
+
 /// Writes a file per object and sample.
 fn each_file<R: Read + Seek>(
     clip: &mut Clip<R>,
@@ -54,7 +63,7 @@ fn each_file<R: Read + Seek>(
     end: &str,
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
-    mut write: impl FnMut(&mut OutFile, &ObjectInfo, &[[f32; 3]], Option<&TextureCoordinates>),
+    mut write: impl FnMut(&mut OutFile, &MeshSample),
 ) -> Result<(), ExportError> {
     let names = file_names(clip.objects().map(|object| object.name.as_str()));
     for sample in 0..clip.samples().len() {
@@ -65,15 +74,17 @@ fn each_file<R: Read + Seek>(
                 let mut faces = Faces::default();
                 quads.iter().for_each(|quad| faces.push(quad));
                 let object = ObjectInfo { faces, ..clip.object(object).clone() };
-                write(&mut file, &object, &positions, None);
+                let object = &object;
+                let mesh = MeshSample { object, positions, uvs: None, velocities: None, particles: None };
+                write(&mut file, &mesh);
                 output.finish(file)?;
                 continue;
             }
             let positions = clip.positions(object, sample)?;
-            let uvs = clip.texture_coordinates(object).cloned();
+            let uvs = clip.texture_coordinates_at(object, sample)?;
+            let (velocities, particles) = (clip.velocities(object, sample)?, clip.particles(object, sample)?);
             let object = clip.object_at(object, sample)?;
-            let uvs = uvs.filter(|uvs| uvs.fit(object.rest.len(), object.faces.corners().len()));
-            write(&mut file, object, &positions, uvs.as_ref());
+            write(&mut file, &MeshSample { object, positions, uvs, velocities, particles });
             output.finish(file)?;
         }
         progress((sample + 1) as f64 / clip.samples().len() as f64);
@@ -133,28 +144,103 @@ pub(crate) fn write_ply<R: Read + Seek>(
     output: &mut Output,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), ExportError> {
-    each_file(clip, folder, "ply", output, progress, |file, object, positions, _| {
-        write_ply_mesh(file, object, positions);
-    })
+    each_file(clip, folder, "ply", output, progress, write_ply_mesh)
 }
 
-fn write_ply_mesh(file: &mut OutFile, object: &ObjectInfo, positions: &[[f32; 3]]) {
-    // Nearly all readers expect the corner count of a face as one byte.
-    let is_short = object.faces.iter().all(|face| face.len() <= 255);
-    file.text(format!(
-        "ply\nformat binary_little_endian 1.0\ncomment written by Nucleus\nelement vertex {}\n\
-         property float x\nproperty float y\nproperty float z\nelement face {}\n\
-         property list {} uint vertex_indices\nend_header\n",
-        positions.len(),
-        object.faces.len(),
-        if is_short { "uchar" } else { "uint" },
-    ));
-    file.floats_le(positions);
-    for face in object.faces.iter() {
-        match is_short {
-            true => file.bytes(&[face.len() as u8]),
-            false => file.bytes(&(face.len() as u32).to_le_bytes()),
+/// Values of the vertices of a PLY file.
+struct VertexProperty {
+    /// `float x`
+    declaration: String,
+    /// Bytes of a value.
+    size: usize,
+    bytes: Vec<u8>,
+}
+
+impl VertexProperty {
+    fn floats(name: &str, values: impl Iterator<Item = f32>) -> Self {
+        let bytes = values.flat_map(f32::to_le_bytes).collect();
+        Self { declaration: format!("float {name}"), size: 4, bytes }
+    }
+
+    /// The numbers of particles; as `double` where 32 bits do not hold them, because PLY has no longer integer.
+    fn ids(particles: &[Particle]) -> Self {
+        let ids = particles.iter().map(|particle| particle.id);
+        match ids.clone().map(u32::try_from).collect::<Result<Vec<u32>, _>>() {
+            Ok(ids) => Self {
+                declaration: "uint id".to_owned(),
+                size: 4,
+                bytes: ids.into_iter().flat_map(u32::to_le_bytes).collect(),
+            },
+            Err(_) => Self {
+                declaration: "double id".to_owned(),
+                size: 8,
+                bytes: ids.flat_map(|id| (id as f64).to_le_bytes()).collect(),
+            },
         }
+    }
+}
+
+/// Positions, velocities, texture coordinates and the numbers of particles, as far as an object has them.
+fn vertex_properties(mesh: &MeshSample) -> Vec<VertexProperty> {
+    let vectors = |names: [&'static str; 3], all: &[[f32; 3]]| {
+        let column = |(axis, name)| VertexProperty::floats(name, all.iter().map(|vector| vector[axis]));
+        names.into_iter().enumerate().map(column).collect::<Vec<_>>()
+    };
+    let mut all = vectors(["x", "y", "z"], &mesh.positions);
+    all.extend(mesh.velocities.iter().flat_map(|velocities| vectors(["vx", "vy", "vz"], velocities)));
+    if let Some(uvs) = mesh.uvs.as_ref().filter(|uvs| uvs.corners.is_empty()) {
+        all.extend(
+            [("s", 0), ("t", 1)]
+                .map(|(name, axis)| VertexProperty::floats(name, uvs.values.iter().map(|uv| uv[axis]))),
+        );
+    }
+    if let Some(particles) = &mesh.particles {
+        all.push(VertexProperty::ids(particles));
+        all.extend(PARTICLE_FACTS.map(|(name, fact)| {
+            VertexProperty::floats(name, particles.iter().map(|particle| fact(particle) as f32))
+        }));
+    }
+    all
+}
+
+/// Texture coordinates with seams are lists of the corners of each face, `texcoord`, as in MeshLab.
+fn write_ply_mesh(file: &mut OutFile, mesh: &MeshSample) {
+    let faces = &mesh.object.faces;
+    let seams = mesh.uvs.as_ref().filter(|uvs| !uvs.corners.is_empty());
+    // Nearly all readers expect the length of a list as one byte.
+    let longest = if seams.is_some() { 127 } else { 255 };
+    let is_short = faces.iter().all(|face| face.len() <= longest);
+    let length = |file: &mut OutFile, length: usize| match is_short {
+        true => file.bytes(&[length as u8]),
+        false => file.bytes(&(length as u32).to_le_bytes()),
+    };
+    let properties = vertex_properties(mesh);
+    let list = if is_short { "uchar" } else { "uint" };
+    let declared: String =
+        properties.iter().map(|property| format!("property {}\n", property.declaration)).collect();
+    let of_corners = seams.map(|_| format!("property list {list} float texcoord\n")).unwrap_or_default();
+    file.text(format!(
+        "ply\nformat binary_little_endian 1.0\ncomment written by Nucleus\nelement vertex {}\n{declared}\
+         element face {}\nproperty list {list} uint vertex_indices\n{of_corners}end_header\n",
+        mesh.positions.len(),
+        faces.len(),
+    ));
+    for point in 0..mesh.positions.len() {
+        for VertexProperty { size, bytes, .. } in &properties {
+            file.bytes(&bytes[point * size..(point + 1) * size]);
+        }
+    }
+    let mut next = 0;
+    for face in faces.iter() {
+        length(file, face.len());
         face.iter().for_each(|point| file.bytes(&point.to_le_bytes()));
+        if let Some(uvs) = seams {
+            length(file, 2 * face.len());
+            let corners = uvs.corners[next..next + face.len()].iter();
+            corners
+                .flat_map(|&corner| uvs.values[corner as usize])
+                .for_each(|x| file.bytes(&x.to_le_bytes()));
+        }
+        next += face.len();
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::ObjectInfo;
+use nucleus_cache::{ObjectInfo, TextureCoordinates};
 use nucleus_core::Particle;
 
 use crate::clip::{Clip, PARTICLE_FACTS};
@@ -26,7 +26,8 @@ pub(crate) fn write<R: Read + Seek>(
             let velocities = clip.velocities(object, sample)?;
             let mut file = output.file(folder.join(format!("{name}.{frame}.vtu")))?;
             let particles = clip.particles(object, sample)?;
-            let data = point_data(velocities.as_deref(), particles.as_deref());
+            let uvs = clip.texture_coordinates_at(object, sample)?;
+            let data = point_data(velocities.as_deref(), uvs.as_ref(), particles.as_deref());
             write_grid(&mut file, clip.object_at(object, sample)?, &positions, data);
             output.finish(file)?;
         }
@@ -59,14 +60,25 @@ struct PointArray {
     bytes: Vec<u8>,
 }
 
-/// The values of points: velocities, and numbers, ages, lifespans and masses of particles that have their own.
-fn point_data(velocities: Option<&[[f32; 3]]>, particles: Option<&[Particle]>) -> Vec<PointArray> {
+/// The values of points: velocities, texture coordinates, and numbers, ages, lifespans and masses of particles that have
+/// their own. VTK has no values of corners, so texture coordinates with seams are left out.
+fn point_data(
+    velocities: Option<&[[f32; 3]]>,
+    uvs: Option<&TextureCoordinates>,
+    particles: Option<&[Particle]>,
+) -> Vec<PointArray> {
     let mut data = Vec::new();
     data.extend(velocities.map(|all| PointArray {
         name: "velocity",
         kind: "Float32",
         components: 3,
         bytes: floats(all.as_flattened().iter().copied()),
+    }));
+    data.extend(uvs.filter(|uvs| uvs.corners.is_empty()).map(|uvs| PointArray {
+        name: "uv",
+        kind: "Float32",
+        components: 2,
+        bytes: floats(uvs.values.as_flattened().iter().copied()),
     }));
     let Some(particles) = particles else { return data };
     let ids = particles.iter().flat_map(|particle| (particle.id as i64).to_le_bytes()).collect();
@@ -111,10 +123,14 @@ fn write_grid(file: &mut OutFile, object: &ObjectInfo, positions: &[[f32; 3]], d
         .zip(&heads)
         .map(|(block, &(name, kind, components))| array(name, kind, components, block))
         .collect();
-    let point_data = match heads.first() {
-        Some(("velocity", ..)) => format!("<PointData Vectors=\"velocity\">{arrays}</PointData>\n"),
-        Some(_) => format!("<PointData>{arrays}</PointData>\n"),
-        None => String::new(),
+    let roles: String = [("velocity", "Vectors"), ("uv", "TCoords")]
+        .iter()
+        .filter(|(name, _)| heads.iter().any(|head| head.0 == *name))
+        .map(|(name, role)| format!(" {role}=\"{name}\""))
+        .collect();
+    let point_data = match heads.is_empty() {
+        false => format!("<PointData{roles}>{arrays}</PointData>\n"),
+        true => String::new(),
     };
     file.text(format!(
         "<?xml version=\"1.0\"?>\n\

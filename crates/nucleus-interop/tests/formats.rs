@@ -94,12 +94,108 @@ fn mdd_is_big_endian_and_has_a_time_for_each_sample() {
 }
 
 #[test]
-fn ply_and_vtu_hold_the_floats_of_the_cache() {
+fn vtu_holds_the_floats_of_the_cache() {
     let raw: Vec<u8> = sheet(9).as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
-    for (format, end) in [(Format::Ply, "ply"), (Format::Vtu, "vtu")] {
-        let (_folder, out) = all(format);
-        let bytes = fs::read(out.join(format!("ns_sheet_1.0009.{end}"))).unwrap();
-        assert!(bytes.windows(raw.len()).any(|window| window == raw), "{end}");
+    let (_folder, out) = all(Format::Vtu);
+    let bytes = fs::read(out.join("ns_sheet_1.0009.vtu")).unwrap();
+    assert!(bytes.windows(raw.len()).any(|window| window == raw));
+}
+
+/// A binary PLY file: the names of its vertex properties, their values for each vertex as 32-bit words, of which a `double`
+/// has two, and the bytes of the faces.
+fn ply(path: &Path) -> (Vec<String>, Vec<Vec<u32>>, Vec<u8>) {
+    let bytes = fs::read(path).unwrap();
+    let end = bytes.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+    let head = String::from_utf8(bytes[..end].to_vec()).unwrap();
+    let (vertices, _) = head.split_once("element face").unwrap();
+    let count: usize =
+        vertices.lines().find_map(|line| line.strip_prefix("element vertex ")).unwrap().parse().unwrap();
+    let names: Vec<String> =
+        vertices.lines().filter_map(|line| line.strip_prefix("property ")).map(str::to_owned).collect();
+    let words: usize = names.iter().map(|name| if name.starts_with("double ") { 2 } else { 1 }).sum();
+    let row = 4 * words;
+    let values = bytes[end..end + count * row].chunks_exact(row);
+    let values = values.map(|row| (0..words).map(|k| word(row, 4 * k)).collect()).collect();
+    (names, values, bytes[end + count * row..].to_vec())
+}
+
+#[test]
+fn ply_holds_positions_velocities_and_texture_coordinates_of_points() {
+    let (_folder, out) = all(Format::Ply);
+    let (names, values, _) = ply(&out.join("ns_sheet_1.0009.ply"));
+    assert_eq!(names, ["float x", "float y", "float z", "float vx", "float vy", "float vz"]);
+    let bits = |point: [f32; 3]| point.map(f32::to_bits).to_vec();
+    assert_eq!(
+        values.iter().map(|row| row[..3].to_vec()).collect::<Vec<_>>(),
+        sheet(9).into_iter().map(bits).collect::<Vec<_>>()
+    );
+    let mut cache = Playback::open(out.with_file_name("sample.mcap")).unwrap();
+    let moment = cache.end_of(9).unwrap();
+    let velocities = cache.velocities(0, moment).unwrap().unwrap();
+    assert!(values.iter().zip(velocities).all(|(row, velocity)| row[3..] == bits(velocity)));
+    let (names, values, _) = ply(&out.join("wall.0009.ply"));
+    assert_eq!(names, ["float x", "float y", "float z", "float s", "float t"]);
+    let uvs: Vec<[f32; 2]> =
+        values.iter().map(|row| [f32::from_bits(row[3]), f32::from_bits(row[4])]).collect();
+    assert_eq!(uvs, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+}
+
+#[test]
+fn ply_holds_texture_coordinates_with_seams_as_lists_of_the_corners() {
+    let (_folder, out) = all(Format::Ply);
+    let (names, _, faces) = ply(&out.join("_1_cart.0009.ply"));
+    assert!(!names.contains(&"float s".to_owned()), "{names:?}");
+    // Five corners with their points, and then with two coordinates each.
+    assert_eq!((faces[0], faces[21], faces.len()), (5, 10, 1 + 20 + 1 + 40));
+    let uvs: Vec<f32> = (0..10).map(|k| f32::from_bits(word(&faces, 22 + 4 * k))).collect();
+    assert_eq!(uvs, [0.75, 0.5, 0.25, 0.5, 0.75, 0.5, 0.25, 0.5, 0.75, 0.5]);
+}
+
+#[test]
+fn ply_holds_the_numbers_of_particles() {
+    let lives = |path: &Path| sample::record(path, Variant { lives: true, ..Variant::default() });
+    let (_folder, out, exported) = try_export(lives, Format::Ply, Selection::default());
+    exported.unwrap();
+    let mut cache = Playback::open(out.with_file_name("sample.mcap")).unwrap();
+    let (dust, moment) =
+        (cache.objects().iter().position(|o| o.name == "dust").unwrap(), cache.end_of(9).unwrap());
+    let particles = cache.particles(dust, moment).unwrap().unwrap();
+    let (names, values, _) = ply(&out.join("dust.0009.ply"));
+    assert_eq!(names[names.len() - 4..], ["double id", "float age", "float lifespan", "float mass"]);
+    // Numbers beyond 32 bits are exact in 64-bit floating-point numbers.
+    let id = |row: &Vec<u32>| {
+        let at = row.len() - 5;
+        f64::from_bits(u64::from(row[at]) | u64::from(row[at + 1]) << 32) as u64
+    };
+    let ids: Vec<u64> = values.iter().map(id).collect();
+    assert_eq!(ids, particles.iter().map(|particle| particle.id).collect::<Vec<_>>());
+}
+
+#[test]
+fn vtu_names_texture_coordinates_of_points_and_leaves_out_those_with_seams() {
+    let (_folder, out) = all(Format::Vtu);
+    let wall = fs::read(out.join("wall.0009.vtu")).unwrap();
+    let text = String::from_utf8_lossy(&wall);
+    assert!(text.contains("<PointData TCoords=\"uv\">"), "{text}");
+    assert!(text.contains("Name=\"uv\" NumberOfComponents=\"2\""), "{text}");
+    let uvs = [[0.0_f32, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let raw: Vec<u8> = uvs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    assert!(wall.windows(raw.len()).any(|window| window == raw));
+    let cart = fs::read(out.join("_1_cart.0009.vtu")).unwrap();
+    assert!(!String::from_utf8_lossy(&cart).contains("TCoords"));
+}
+
+#[test]
+fn a_scale_changes_the_stated_unit_and_keeps_the_real_size() {
+    let metres = Selection { scale: 0.01, ..Selection::default() };
+    let (_folder, out, _) = exported(Format::Usda, metres.clone());
+    let text = fs::read_to_string(&out).unwrap();
+    assert!(text.contains("metersPerUnit = 1\n"), "centimetres times 0.01 are metres");
+    let [x, y, z] = sheet(START)[4].map(|x| (f64::from(x) * 0.01) as f32);
+    assert!(text.contains(&format!("({x}, {y}, {z})")), "{text}");
+    for format in [Format::Glb, Format::Foxglove] {
+        let (_folder, _, refused) = try_export(sample::write, format, metres.clone());
+        assert!(matches!(refused, Err(ExportError::FixedUnit { .. })), "{refused:?}");
     }
 }
 

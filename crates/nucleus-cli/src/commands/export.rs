@@ -77,7 +77,7 @@ impl clap::ValueEnum for Wanted {
         };
         let help = match format {
             Format::Obj => "Wavefront OBJ, a file per object and frame",
-            Format::Ply => "binary PLY, a file per object and frame",
+            Format::Ply => "binary PLY, a file per object and frame: UVs, velocities, particle numbers",
             Format::Pc2 => "point caches of 3ds Max and Blender, with their meshes",
             Format::Mdd => "point caches of LightWave, Modo and Houdini, with their meshes",
             Format::Usda => {
@@ -85,7 +85,9 @@ impl clap::ValueEnum for Wanted {
             }
             Format::Usdc => "the same as binary, for Maya, Houdini and Blender",
             Format::Glb => "glTF with morph targets, one file: UVs, normals, materials, cameras",
-            Format::Vtu => "VTK and ParaView, a file per object and frame",
+            Format::Vtu => {
+                "VTK and ParaView, a file per object and frame: UVs without seams, velocities, particle numbers"
+            }
             Format::Mc => "Maya nCache, 32 bit",
             Format::Mcx => "Maya nCache, 64 bit",
             Format::Foxglove => "MCAP for Foxglove, Lichtblick and rerun",
