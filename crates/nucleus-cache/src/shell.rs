@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-/// A path as one word of a shell: in quotes if it has blanks or characters that a shell reads otherwise.
+/// A path as one word of a shell: in quotes if it has blanks or characters that a shell reads otherwise, and with `./` if it
+/// would be read as an option.
 ///
 /// ```
 /// # use std::path::Path;
@@ -13,9 +14,10 @@ use std::path::Path;
 /// ```
 pub fn shell_word(path: &Path) -> String {
     let text = path.to_string_lossy();
+    let text = if text.starts_with('-') { format!("./{text}") } else { text.into_owned() };
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+,=@%:".contains(c) || cfg!(windows) && c == '\\';
     match () {
-        () if !text.is_empty() && text.chars().all(is_plain) => text.into_owned(),
+        () if !text.is_empty() && text.chars().all(is_plain) => text,
         // No path of Windows has a double quote.
         () if cfg!(windows) => format!("\"{text}\""),
         () => format!("'{}'", text.replace('\'', r"'\''")),
@@ -36,6 +38,9 @@ mod tests {
             ("~/a.ron", "'~/a.ron'"),
             ("it's", r"'it'\''s'"),
             ("", "''"),
+            ("-dash.mcap", "./-dash.mcap"),
+            ("-a b", "'./-a b'"),
+            ("a-b", "a-b"),
         ] {
             assert_eq!(shell_word(Path::new(path)), word);
         }

@@ -54,6 +54,15 @@ impl Summary<'_> {
         outcome.worst.is_some() || has_frames && matches!(self.ending, Ending::Done)
     }
 
+    /// Why a check has no result; `None` if it has one.
+    fn unevaluated(&self, outcome: &checks::Outcome) -> Option<&'static str> {
+        match (self.is_evaluated(outcome), &self.ending) {
+            (true, _) => None,
+            (false, Ending::Done) => Some("the run is the start frame alone"),
+            (false, _) => Some("the run ended before"),
+        }
+    }
+
     fn is_clean(&self) -> bool {
         self.audit
             .is_none_or(|audit| audit.account().is_clean() && self.statistics.passed_through_before == 0)
@@ -120,7 +129,7 @@ impl Summary<'_> {
             writeln!(text, "frame {frame}: {} ({count} sanitized in all)", self.sanitized(input))?;
         }
         for outcome in self.checks {
-            writeln!(text, "{}", check_line(outcome, self.is_evaluated(outcome)))?;
+            writeln!(text, "{}", check_line(outcome, self.unevaluated(outcome)))?;
         }
         self.audit
             .into_iter()
@@ -292,10 +301,10 @@ fn sanitized(input: InvalidInput, objects: &[Object], fields: &[&str]) -> String
 }
 
 /// `check maxStretch(0.02): failed with 0.031 at frame 48`.
-fn check_line(outcome: &checks::Outcome, is_evaluated: bool) -> String {
+fn check_line(outcome: &checks::Outcome, unevaluated: Option<&str>) -> String {
     let check = &outcome.check;
-    if !is_evaluated {
-        return format!("check {check}: not evaluated, the run ended before");
+    if let Some(reason) = unevaluated {
+        return format!("check {check}: not evaluated, {reason}");
     }
     let verdict = if outcome.passed { "passed" } else { "FAILED" };
     let side = match check.limit() {

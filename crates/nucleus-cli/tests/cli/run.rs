@@ -162,6 +162,23 @@ fn invalid_option_values_are_refused() {
 }
 
 #[test]
+fn a_check_of_a_run_of_the_start_frame_alone_is_not_evaluated_and_the_run_ended_as_asked() {
+    let folder = folder();
+    scene(folder.path(), 9, "finite");
+    fs::rename(folder.path().join("drape.ron"), folder.path().join("-dash.ron")).unwrap();
+    let output = nucleus(folder.path(), &["run", "./-dash.ron", "--frames", "1"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stdout(&output);
+    assert!(said.contains("check finite: not evaluated, the run is the start frame alone"), "{said}");
+    assert!(
+        said.contains("`nucleus play ./-dash.mcap`"),
+        "a name that begins with a dash is no option: {said}"
+    );
+    let info = nucleus(folder.path(), &["info", "./-dash.mcap"]);
+    assert_eq!(info.status.code(), Some(0), "{}", stderr(&info));
+}
+
+#[test]
 fn a_cache_with_the_name_of_a_picture_is_refused() {
     let folder = folder();
     scene(folder.path(), 2, "");
