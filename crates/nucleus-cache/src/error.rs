@@ -5,8 +5,6 @@ use std::path::PathBuf;
 
 use mcap::McapError;
 
-use crate::shell::shell_word;
-
 /// Why a file cannot be opened as a cache.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -156,16 +154,15 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// The target is an existing cache.
-    #[error("`{}` exists; `--force` replaces it, `-o` names another file", path.display())]
+    #[error("`{}` exists; `Recorder::replace` replaces it", path.display())]
     Exists {
         /// The existing cache.
         path: PathBuf,
     },
     /// A killed run has left a partial cache.
     #[error(
-        "`{}` is left of a run that was killed; `nucleus recover {}` saves its frames, `--force` replaces it",
-        path.display(),
-        shell_word(path)
+        "`{}` is left of a run that was killed; `Playback::recover` saves its frames, `Recorder::replace` replaces it",
+        path.display()
     )]
     Unfinished {
         /// The partial cache.
@@ -255,13 +252,31 @@ pub enum RecordError {
         /// The cause.
         source: ReadError,
     },
-    /// Frames must be recorded in order, after the start frame.
-    #[error("frame {frame} cannot follow frame {last}")]
+    /// Every frame that the run solves must be recorded, in order, after the start frame.
+    #[error("frame {frame} cannot follow frame {last}: frame {expected} is next")]
     FrameOrder {
         /// The frame to be recorded.
         frame: i32,
         /// The last recorded frame.
         last: i32,
+        /// The frame after it.
+        expected: i32,
+    },
+    /// The run was announced with an earlier end.
+    #[error("frame {frame} cannot be recorded: the run was announced to end at frame {end}")]
+    BeyondEnd {
+        /// The frame to be recorded.
+        frame: i32,
+        /// The last frame of the run.
+        end: i32,
+    },
+    /// A frame ended without a step.
+    #[error(
+        "no step of frame {expected} was recorded before its end: step the solver with `Recorder::frame({expected})`"
+    )]
+    NotStepped {
+        /// The frame that a step was expected of.
+        expected: i32,
     },
     /// The report of a frame cannot be represented as JSON.
     #[error("the report of frame {frame} cannot be written as JSON")]

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use nucleus_cache::{
-    Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, Recorder, RunInfo, SelectedPoints,
-    Source, SurfaceShape, TextureCoordinates,
+    Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, RecordError, Recorder, RunInfo,
+    SelectedPoints, Source, SurfaceShape, TextureCoordinates, shell_word,
 };
 use nucleus_core::{GroundPlane, Real};
 use nucleus_graph::Simulation;
@@ -85,12 +85,27 @@ pub fn begin<R: Real>(
         true => Recorder::replace(out, &run, objects),
         false => Recorder::create(out, &run, objects),
     };
-    let mut recorder = recorder?;
+    let mut recorder = recorder.map_err(with_options)?;
     recorder.record_start(simulation.state())?;
     if recorder.checkpoint_due() {
         recorder.record_checkpoint(&simulation.save())?;
     }
     Ok(Some(recorder))
+}
+
+/// An error of a recorder, with the options of the command that help.
+pub fn with_options(error: RecordError) -> anyhow::Error {
+    match error {
+        RecordError::Exists { path } => {
+            anyhow!("`{}` exists; `--force` replaces it, `-o` names another file", path.display())
+        }
+        RecordError::Unfinished { path } => anyhow!(
+            "`{}` is left of a run that was killed; `nucleus recover {}` saves its frames, `--force` replaces it",
+            path.display(),
+            shell_word(&path)
+        ),
+        other => anyhow!(other),
+    }
 }
 
 /// The facts about a run that follow from its scene. `scene` is its path and its text.

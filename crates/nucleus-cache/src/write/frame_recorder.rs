@@ -20,6 +20,7 @@ pub struct FrameRecorder<'a, W: Write + Seek = File> {
 
 impl<W: Write + Seek> StepObserver for FrameRecorder<'_, W> {
     fn substep(&mut self, index: SubstepIndex, state: &dyn StateView) {
+        self.recorder.is_stepped = true;
         let RunInfo { detail, start, end, .. } = self.recorder.run;
         let wanted = match detail {
             Detail::Substeps => true,
@@ -57,11 +58,17 @@ impl<W: Write + Seek> Recorder<W> {
     /// The observer of frame `frame`, to which the solver shows its substeps.
     ///
     /// # Errors
-    /// When the frame does not follow the last one.
+    /// When the frame is not the next one that the run solves.
     pub fn frame(&mut self, frame: i32) -> Result<FrameRecorder<'_, W>, RecordError> {
-        if frame <= self.last_frame {
-            return Err(RecordError::FrameOrder { frame, last: self.last_frame });
+        let (end, last) = (self.run.end, self.last_frame);
+        let expected = self.next_frame();
+        if frame > end {
+            return Err(RecordError::BeyondEnd { frame, end });
         }
+        if frame != expected {
+            return Err(RecordError::FrameOrder { frame, last, expected });
+        }
+        self.is_stepped = false;
         self.before = Some((self.last_frame, self.time_samples));
         // A frame of which an earlier one is missing is no longer than the others.
         let least = i64::from(frame) - i64::from(self.run.interval);
@@ -70,6 +77,15 @@ impl<W: Write + Seek> Recorder<W> {
         self.last_frame = frame;
         self.contact_counts = None;
         Ok(FrameRecorder { recorder: self })
+    }
+
+    /// The frame after the last recorded one: the next multiple of the interval from the start, or the end.
+    pub(crate) fn next_frame(&self) -> i32 {
+        let RunInfo { start, end, interval, .. } = self.run;
+        let interval = i64::from(interval.max(1));
+        let solved = (i64::from(self.last_frame) - i64::from(start)).div_euclid(interval);
+        let next = i64::from(start) + (solved + 1) * interval;
+        i32::try_from(next.min(i64::from(end))).unwrap_or(end)
     }
 
     /// The stamp of a substep of the current frame.

@@ -52,6 +52,8 @@ pub struct Recorder<W: Write + Seek = File> {
     /// Frame before the one in flight, and the number of time samples at its end.
     pub(crate) before: Option<(i32, u64)>,
     pub(crate) paths: Option<PartPaths>,
+    /// Whether the frame in flight has had a step.
+    pub(crate) is_stepped: bool,
     /// Compares new messages with those of an older cache, in a resumed run.
     pub(crate) replay_check: Option<Box<ReplayCheck>>,
     /// The first error during a step; [`end_frame`](Self::end_frame) returns it.
@@ -162,6 +164,7 @@ impl<W: Write + Seek> Recorder<W> {
             time_samples: 0,
             before: None,
             paths: None,
+            is_stepped: false,
             replay_check: None,
             deferred_error: None,
             values: Vec::new(),
@@ -187,10 +190,14 @@ impl<W: Write + Seek> Recorder<W> {
     /// `frame`, and with the numbers of points `touching` and `compressed` if contact states are recorded.
     ///
     /// # Errors
-    /// When writing failed, now or during the step.
+    /// When writing failed, now or during the step, or when the frame had no step.
     pub fn end_frame(&mut self, report: &impl Serialize) -> Result<(), RecordError> {
         if let Some(deferred_error) = self.deferred_error.take() {
             return Err(deferred_error);
+        }
+        if !std::mem::take(&mut self.is_stepped) {
+            let expected = if self.before.is_some() { self.last_frame } else { self.next_frame() };
+            return Err(RecordError::NotStepped { expected });
         }
         let frame = self.last_frame;
         let report = report_line(frame, self.contact_counts, report)

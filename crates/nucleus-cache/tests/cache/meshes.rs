@@ -6,7 +6,7 @@ use std::io::Cursor;
 use nucleus_cache::{
     Detail, Difference, Playback, ReadError, RecordError, Recorder, ResumeRange, RunInfo, compare,
 };
-use nucleus_core::{Faces, SubstepIndex};
+use nucleus_core::{Faces, StepObserver, SubstepIndex};
 
 use crate::falling::{self, END, Falling, START, SUBSTEPS, Shared};
 use crate::torn::{CHECKPOINT, CLOTH, record, recorded, run_info, tears, torn};
@@ -137,7 +137,9 @@ fn invalid_meshes_and_unknown_objects_are_refused() {
             Recorder::to_writer(Shared::default(), &falling::run_info(), falling::objects()).unwrap();
         recorder.record_start(&Falling::INITIAL).unwrap();
         let faces = Faces::from_iter([&[0, 1, corner][..]]);
-        recorder.frame(START + 1).unwrap().change_mesh(sample, name, faces, vec![[0.0; 3]; 3]);
+        let mut observer = recorder.frame(START + 1).unwrap();
+        observer.change_mesh(sample, name, faces, vec![[0.0; 3]; 3]);
+        observer.substep(sample, &Falling { frame: START + 1, substep: SUBSTEPS });
         recorder.end_frame(&()).map_err(|error| error.to_string())
     };
     assert_eq!(refusal("floor", 2), Ok(()));

@@ -133,7 +133,38 @@ fn a_frame_out_of_order_is_refused() {
     let mut recorder = Recorder::to_writer(disk, &falling::run_info(), falling::objects()).unwrap();
     falling::record(&mut recorder, falling::START + 2).unwrap();
     let error = recorder.frame(falling::START + 1).err().unwrap();
-    assert_eq!(error.to_string(), "frame 11 cannot follow frame 12");
+    assert_eq!(error.to_string(), "frame 11 cannot follow frame 12: frame 13 is next");
+}
+
+#[test]
+fn a_frame_that_was_not_stepped_is_refused_with_the_frame_that_is_expected() {
+    let run = RunInfo { end: falling::START + 5, interval: 2, ..falling::run_info() };
+    let mut recorder = Recorder::to_writer(falling::Shared::default(), &run, falling::objects()).unwrap();
+    let start = falling::START;
+    falling::record_frames(&mut recorder, []).unwrap();
+    let not_stepped = |recorder: &mut Recorder<_>, frame: i32| {
+        let error = recorder.end_frame(&()).unwrap_err();
+        assert!(matches!(error, RecordError::NotStepped { expected } if expected == frame), "{error}");
+    };
+    not_stepped(&mut recorder, start + 2);
+    for frame in [start + 1, start + 4] {
+        let error = recorder.frame(frame).err().unwrap();
+        let is_next = matches!(error, RecordError::FrameOrder { expected, .. } if expected == start + 2);
+        assert!(is_next, "{error}");
+    }
+    let error = recorder.frame(start + 100).err().unwrap();
+    assert_eq!(error.to_string(), "frame 110 cannot be recorded: the run was announced to end at frame 15");
+    recorder.frame(start + 2).unwrap();
+    not_stepped(&mut recorder, start + 2);
+}
+
+#[test]
+fn the_errors_of_a_recorder_name_functions_and_no_options_of_a_command() {
+    let path = std::path::PathBuf::from("run.mcap");
+    for error in [RecordError::Exists { path: path.clone() }, RecordError::Unfinished { path }] {
+        let text = error.to_string();
+        assert!(text.contains("`Recorder::replace`") && !text.contains("--"), "{text}");
+    }
 }
 
 #[test]

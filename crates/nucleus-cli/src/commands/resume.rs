@@ -136,7 +136,8 @@ impl Resume {
         let help = self.help(&old, copied);
         let start_is_lost = old.lost().contains(&start);
         let kept = ResumeRange { copied: if start_is_lost { start - 1 } else { copied }, compared };
-        let mut recorder = Recorder::resume(&out, replace, &info, objects, old.cache, kept)?;
+        let resumed = Recorder::resume(&out, replace, &info, objects, old.cache, kept);
+        let mut recorder = resumed.map_err(recording::with_options)?;
         if start_is_lost {
             recorder.record_start(run.simulation.state())?;
         }
