@@ -167,12 +167,12 @@ impl Render {
                 .context("the frame range exceeds the largest frame number, 2147483647")?;
             film = film.between(first, last).context("none of these frames was recorded")?;
         }
-        let camera = self.with_options(film.camera())?;
-        let mut film = look_through(film.seen_by(camera), scene_camera);
         let recorded = film.len();
         if kind == OutputKind::Gif {
             film = film.at_most(GifWriter::MAX_FPS);
         }
+        let camera = self.with_options(film.camera())?;
+        let mut film = look_through(film.seen_by(camera), scene_camera);
         let mut progress = ShareProgress::new("drawing");
         let result = film::write(&mut film, out, kind, self.size, &mut |share| progress.show(share));
         progress.end();
