@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{Context, Result, bail, ensure};
-use nucleus_cache::{ObjectInfo, ObjectKind, Playback};
+use nucleus_cache::{ObjectKind, Playback};
 use nucleus_core::Particle;
 use nucleus_graph::Simulation;
 use nucleus_graph::attributes::{Attribute, Value, n_base, n_particle, particle};
@@ -16,7 +16,7 @@ use nucleus_graph::graph::{NodeId, Setting};
 use nucleus_graph::scene::Scene;
 
 use crate::output::say;
-use crate::{diagnostics, figures, files, recording};
+use crate::{diagnostics, figures, files};
 
 mod reset;
 
@@ -63,11 +63,11 @@ impl InitialState {
         let (mut has_velocities, mut unknown) = (true, Vec::new());
         let at = cache.time_samples()[moment].frame;
         let from_start = at <= cache.run().start;
-        let starts = if scale == 1.0 { Vec::new() } else { start_meshes(program) };
+        let simulation: Option<Simulation> = (scale != 1.0).then(|| Simulation::new(program, 1));
         for cloth in cloths {
             let object = self.matching(&mut cache, moment, cloth)?;
-            if let Some(start) = starts.iter().find(|start| start.name == cloth.name) {
-                self.refuse_same_numbers(&cache, &cache.objects()[object], start, program.units_per_metre())?;
+            if let Some(simulation) = &simulation {
+                self.refuse_same_numbers(&cache, object, simulation, cloth)?;
             }
             let positions = cache.positions(object, moment)?;
             let velocities = match cache.velocities(object, moment)? {
@@ -159,12 +159,15 @@ impl InitialState {
     fn refuse_same_numbers(
         &self,
         cache: &Playback,
-        recorded: &ObjectInfo,
-        now: &ObjectInfo,
-        units: f64,
+        recorded: usize,
+        simulation: &Simulation,
+        cloth: &Object,
     ) -> Result<()> {
+        let compile::ObjectKind::Cloth(id) = cloth.kind else { return Ok(()) };
+        let (units, mut start) = (simulation.units_per_metre(), Vec::new());
+        simulation.state().positions(id, units, &mut start);
         let (name, before) = (self.cache.display(), cache.run().units_per_metre);
-        let in_units = diagonal(recorded) / diagonal(now);
+        let in_units = diagonal(&cache.objects()[recorded].rest) / diagonal(&start);
         let in_metres = in_units * units / before;
         // The nearer ratio to 1 tells which of both the scene has kept. A single point has no size.
         let is_converted = !in_units.is_finite() || in_metres.ln().abs() < in_units.ln().abs();
@@ -173,7 +176,7 @@ impl InitialState {
             "the unit of length has changed, and `{}` has not: `{name}` has {} units per metre, and the scene {}, so in \
              metres the mesh is {} times as large in the scene; give the scene the `spaceScale` {} of the cache, or convert \
              its meshes too",
-            now.name,
+            cloth.name,
             figures::number(before),
             figures::number(units),
             figures::number(1.0 / in_metres),
@@ -183,16 +186,10 @@ impl InitialState {
     }
 }
 
-/// The meshes of a scene at its start.
-fn start_meshes(program: &Program) -> Vec<ObjectInfo> {
-    let simulation: Simulation = Simulation::new(program, 1);
-    recording::objects(&simulation).into_iter().map(|(_, object)| object).collect()
-}
-
-/// The diagonal of the bounding box of a mesh.
-fn diagonal(mesh: &ObjectInfo) -> f64 {
+/// The diagonal of the bounding box of points.
+fn diagonal(points: &[[f32; 3]]) -> f64 {
     let along = |axis: usize| {
-        let all = mesh.rest.iter().map(|point| f64::from(point[axis]));
+        let all = points.iter().map(|point| f64::from(point[axis]));
         let [low, high] = [all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max)];
         (high - low).max(0.0).powi(2)
     };
