@@ -166,16 +166,10 @@ fn the_error_of_a_damaged_frame_names_the_remedies() {
     let output = nucleus(folder.path(), &render);
     assert!(output.status.code() == Some(2) && stderr(&output).contains(words), "{}", stderr(&output));
     let said = stderr(&output);
-    let damaged: i32 = said
-        .rsplit("error: ")
-        .next()
-        .unwrap()
-        .split("frame ")
-        .nth(1)
-        .and_then(|after| after.split(' ').next())
-        .unwrap()
-        .parse()
-        .unwrap();
+    // `frame 4 is damaged`
+    let words = said.split_whitespace().collect::<Vec<_>>();
+    let damaged = words.windows(3).find(|words| words[0] == "frame" && words[2] == "is");
+    let damaged: i32 = damaged.unwrap_or_else(|| panic!("{said}"))[1].parse().unwrap();
     let others = if damaged > 3 { format!("1..{}", damaged - 1) } else { format!("{}..6", damaged + 1) };
     let output = nucleus(folder.path(), &[&render[..], &["--frames", &others]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

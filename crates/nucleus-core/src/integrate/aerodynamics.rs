@@ -29,7 +29,7 @@ pub struct Air<R> {
     /// Factors on the relative velocity along the normal, and along the surface.
     along_normal: R,
     along_surface: R,
-    /// What these factors take too much from the change of velocity by forces, in the same directions.
+    /// How much larger the factors on the change of velocity by forces are, along the normal and along the surface.
     of_kick: [R; 2],
     /// Lift over the mass times the length of the step, in s/m.
     lift: R,

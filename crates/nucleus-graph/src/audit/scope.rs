@@ -8,8 +8,7 @@ use nucleus_core::{
     Pin, PointId,
 };
 
-use crate::attributes;
-use crate::attributes::n_base;
+use crate::attributes::{n_base, nucleus};
 use crate::compile::{NucleusProgram, Object, ObjectKind, Program, self_collides};
 use crate::graph::{EvalContext, NodeId};
 
@@ -271,7 +270,7 @@ impl CollisionSettings {
             self_collides: self_collides(moment, node),
             collide: moment.get(node, &n_base::COLLIDE),
             layer: moment.get(node, &n_base::COLLISION_LAYER),
-            layer_range: moment.get(nucleus.node(), &attributes::nucleus::COLLISION_LAYER_RANGE),
+            layer_range: moment.get(nucleus.node(), &nucleus::COLLISION_LAYER_RANGE),
         }
     }
 
