@@ -15,7 +15,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::input::frame::{COUNT_PERIOD, ClothFrame, FrameInput, ResistanceModel};
-use crate::math::{Real, dot};
+use crate::math::{Lanes, Real, by_axis, dot, sub};
 use crate::model::ClothModel;
 use crate::model::strength_maps::AirFactors;
 use crate::parallel::disjoint::DisjointSlice;
@@ -135,62 +135,93 @@ impl AirForces {
     }
 }
 
-impl<R: Real> Air<R> {
-    /// The same with this added to the wind, in m/s.
+/// The aerodynamic forces on points side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct AirLanes<L> {
+    /// In m/s.
+    pub wind: [L; 3],
+    along_normal: L,
+    along_surface: L,
+    of_kick: [L; 2],
+    lift: L,
+    /// Whether any of them has lift; whether forces act on any of them as on a body without air.
+    has_lift: bool,
+    slows_kick: bool,
+}
+
+impl<L> AirLanes<L> {
+    /// The forces that `of` gives for the point of each lane.
     #[inline(always)]
-    pub fn with_wind(&self, added: [R; 3]) -> Self {
-        Self { wind: std::array::from_fn(|axis| self.wind[axis] + added[axis]), ..*self }
+    pub fn of_points<R: Real>(of: impl Fn(usize) -> Air<R>) -> Self
+    where
+        L: Lanes<R>,
+    {
+        let mut airs = [of(0); 8];
+        for lane in 1..4 * L::GROUPS {
+            airs[lane] = of(lane);
+        }
+        Self {
+            wind: by_axis(|axis| lanes_of(&airs, |air| air.wind[axis])),
+            along_normal: lanes_of(&airs, |air| air.along_normal),
+            along_surface: lanes_of(&airs, |air| air.along_surface),
+            of_kick: [lanes_of(&airs, |air| air.of_kick[0]), lanes_of(&airs, |air| air.of_kick[1])],
+            lift: lanes_of(&airs, |air| air.lift),
+            has_lift: airs.iter().any(|air| air.lift != R::ZERO),
+            slows_kick: airs.iter().any(|air| air.of_kick != [R::ZERO; 2]),
+        }
     }
 
-    /// The velocity after the step, from that `before` it and that with the kick of all other forces.
+    /// The velocities after the step, from those `before` it and those with the kick of all other forces.
     #[inline(always)]
-    pub fn slow(&self, before: [R; 4], kicked: [R; 4], normal: [R; 3]) -> [R; 4] {
-        let through: [R; 3] = std::array::from_fn(|axis| kicked[axis] - self.wind[axis]);
-        let facing = dot(normal, through);
-        let speed_squared = dot(through, through);
-        let turned = self.turn(through, normal, facing, speed_squared);
-        let mut slowed = add_scaled(self.wind, [self.along_normal, self.along_surface], turned, normal);
-        if self.of_kick != [R::ZERO; 2] {
-            let kick = std::array::from_fn(|axis| kicked[axis] - before[axis]);
-            slowed = add_scaled(slowed, self.of_kick, kick, normal);
+    pub fn slow<R: Real>(&self, before: [L; 3], kicked: [L; 3], normal: [L; 3]) -> [L; 3]
+    where
+        L: Lanes<R>,
+    {
+        let through = sub(kicked, self.wind);
+        let turned = if self.has_lift { self.turn(through, normal) } else { through };
+        let slowed = add_scaled(self.wind, [self.along_normal, self.along_surface], turned, normal);
+        match self.slows_kick {
+            true => add_scaled(slowed, self.of_kick, sub(kicked, before), normal),
+            false => slowed,
         }
-        [slowed[0], slowed[1], slowed[2], kicked[3]]
     }
 
     /// Lift rotates the relative velocity and keeps its length.
     #[inline(always)]
-    fn turn(&self, through: [R; 3], normal: [R; 3], facing: R, speed_squared: R) -> [R; 3] {
-        if self.lift == R::ZERO || speed_squared <= R::MIN_DENOMINATOR {
-            return through;
-        }
+    fn turn<R: Real>(&self, through: [L; 3], normal: [L; 3]) -> [L; 3]
+    where
+        L: Lanes<R>,
+    {
+        let (facing, speed_squared) = (dot(normal, through), dot(through, through));
         let share = facing / speed_squared;
         // At most a turn of 45° in a step: lift too strong for the step is bounded, not unstable.
-        let turn = self.lift * speed_squared.sqrt();
-        let turn = if turn > R::ONE {
-            R::ONE
-        } else if turn < -R::ONE {
-            -R::ONE
-        } else {
-            turn
-        };
-        let lifted: [R; 3] = std::array::from_fn(|axis| {
-            through[axis] - turn * facing * (normal[axis] - through[axis] * share)
-        });
+        let turn = (self.lift * speed_squared.sqrt()).least(L::splat(R::ONE)).most(L::splat(-R::ONE));
+        let lifted = by_axis(|axis| through[axis] - turn * facing * (normal[axis] - through[axis] * share));
         let scale = (speed_squared / dot(lifted, lifted)).sqrt();
-        lifted.map(|x| x * scale)
+        let moves = speed_squared - L::splat(R::MIN_DENOMINATOR);
+        by_axis(|axis| moves.choose_by_sign(lifted[axis] * scale, through[axis]))
     }
+}
+
+/// A number of each point, by lane.
+#[inline(always)]
+fn lanes_of<R: Real, L: Lanes<R>>(airs: &[Air<R>; 8], number: impl Fn(&Air<R>) -> R) -> L {
+    L::of_groups(|group| {
+        let of = |k: usize| number(&airs[4 * group + k]);
+        [of(0), of(1), of(2), of(3)]
+    })
 }
 
 /// Adds a vector, with a factor along the normal and another along the surface.
 #[inline(always)]
-fn add_scaled<R: Real>(
-    to: [R; 3],
-    [along_normal, along_surface]: [R; 2],
-    vector: [R; 3],
-    normal: [R; 3],
-) -> [R; 3] {
+fn add_scaled<R: Real, L: Lanes<R>>(
+    to: [L; 3],
+    [along_normal, along_surface]: [L; 2],
+    vector: [L; 3],
+    normal: [L; 3],
+) -> [L; 3] {
     let facing = dot(normal, vector);
-    std::array::from_fn(|axis| {
+    by_axis(|axis| {
         let across = normal[axis] * facing;
         to[axis] + across * along_normal + (vector[axis] - across) * along_surface
     })

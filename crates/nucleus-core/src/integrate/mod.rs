@@ -15,6 +15,7 @@
 //! | Stage | Read |
 //! |---|---|
 //! | gravity, forces, inertia; velocities after the corrections | [`predict`] |
+//! | the motion of points by forces, eight at a time | [`move_points`] |
 //! | drag, lift and wind, implicit per time step | [`aerodynamics`] |
 //! | what is added to the wind at each point | [`local_wind`] |
 //! | wind that varies in space and time | [`gusts`] |
@@ -24,5 +25,6 @@ pub mod aerodynamics;
 pub mod air_push;
 pub mod gusts;
 pub mod local_wind;
+mod move_points;
 pub mod predict;
 pub mod wind_shadow;

@@ -10,10 +10,11 @@
 use std::ops::Range;
 
 use crate::input::frame::FrameInput;
-use crate::integrate::aerodynamics::{Air, AirForces};
+use crate::integrate::aerodynamics::AirForces;
+use crate::integrate::move_points::{ExternalForces, MovePoints};
+use crate::math::kernel;
 use crate::math::{Lanes, Real, Row4};
 use crate::model::ClothModel;
-use crate::model::strength_maps::AirFactors;
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 use crate::particles::slowing::damped_share;
@@ -107,28 +108,21 @@ impl<'a, R: Real> Prediction<'a, R> {
     #[allow(unsafe_code)]
     pub unsafe fn move_points(&self, points: Range<u32>, predicted: &mut [Row4<R>]) {
         let forces = ExternalForces { air_factors: self.cloth.air_factors(&points), ..self.forces };
+        let MotionColumns { displacement, velocity, normal, added_wind, field } = self.columns;
+        let rows = points.start as usize..points.end as usize;
         // SAFETY: the caller's promise.
-        unsafe { move_points(&self.columns, points, predicted, &forces) };
+        unsafe {
+            kernel::run(MovePoints {
+                displacement: displacement.run(points.clone()),
+                velocity: velocity.run(points),
+                predicted,
+                normal: normal.get(rows.clone()).unwrap_or_default(),
+                added_wind: added_wind.get(rows.clone()).unwrap_or_default(),
+                field: field.get(rows).unwrap_or_default(),
+                forces,
+            });
+        }
     }
-}
-
-/// The external forces on the points of one cloth in one time step.
-#[derive(Debug, Clone, Copy)]
-struct ExternalForces<'a, R> {
-    /// Change of velocity by gravity in m/s.
-    gravity: [R; 3],
-    /// Force on every point times the seconds for which it acts, in N·s.
-    impulse: [R; 3],
-    /// Drag, lift and wind; none in a vacuum or where no air is felt.
-    air: Option<AirForces>,
-    /// Vertex maps of the air, one entry per point of the run; empty where there are none.
-    air_factors: &'a [AirFactors],
-    /// The share of the velocity that `damp` of particles takes.
-    damped: R,
-    /// For how long they act, in seconds.
-    seconds: R,
-    /// Length of the step in seconds.
-    h: R,
 }
 
 /// The columns that a prediction reads and writes.
@@ -144,54 +138,6 @@ pub struct MotionColumns<'a, R> {
     pub added_wind: &'a [Row4<R>],
     /// Acceleration by fields in m/s²; empty without fields.
     pub field: &'a [Row4<R>],
-}
-
-/// Moves a run of points. A pinned point keeps its velocity, which is that of its pin.
-///
-/// # Safety
-/// No other task of the loop touches these points.
-#[allow(unsafe_code)]
-unsafe fn move_points<R: Real>(
-    columns: &MotionColumns<'_, R>,
-    points: Range<u32>,
-    predicted: &mut [Row4<R>],
-    forces: &ExternalForces<'_, R>,
-) {
-    // SAFETY: the caller's promise.
-    let (displacement, velocity) =
-        unsafe { (columns.displacement.run(points.clone()), columns.velocity.run(points.clone())) };
-    let four = |[x, y, z]: [R; 3]| R::Lanes::from_array([x, y, z, R::ZERO]);
-    let (gravity, impulse, zero) = (four(forces.gravity), four(forces.impulse), R::Lanes::splat(R::ZERO));
-    let [h, seconds] = [forces.h, forces.seconds].map(|seconds| four([seconds; 3]));
-    let damped = R::Lanes::splat(forces.damped);
-    let uniform_air = forces.air.map(|air| air.at(&AirFactors::NONE));
-    for (k, ((d, v), p)) in displacement.iter_mut().zip(velocity).zip(predicted).enumerate() {
-        let x = d.lanes();
-        let inverse_mass = x.splat_last();
-        let kick = inverse_mass.choose_by_sign(gravity + impulse * inverse_mass, zero);
-        let mut kicked = v.lanes() + kick;
-        if let Some(field) = columns.field.get(points.start as usize + k) {
-            kicked = kicked + inverse_mass.choose_by_sign(field.lanes() * seconds, zero);
-        }
-        if let Some(air) = &uniform_air
-            && d.0[3] > R::ZERO
-        {
-            let mapped: Option<Air<R>> =
-                forces.air_factors.get(k).zip(forces.air).map(|(factors, air)| air.at(factors));
-            let normal = columns.normal[points.start as usize + k];
-            let air = mapped.as_ref().unwrap_or(air);
-            let slowed = match columns.added_wind.get(points.start as usize + k) {
-                Some(added) => air.with_wind(added.xyz()).slow(v.0, kicked.to_array(), normal),
-                None => air.slow(v.0, kicked.to_array(), normal),
-            };
-            kicked = Row4(slowed).lanes();
-        }
-        kicked = inverse_mass.choose_by_sign(kicked - kicked * damped, kicked);
-        let moved = Row4((x + kicked * h).to_array());
-        *v = Row4(kicked.to_array());
-        *d = moved;
-        *p = moved;
-    }
 }
 
 /// Adds the position corrections of the time step to the velocities, over `h` seconds. Motion that resolves a

@@ -3,6 +3,7 @@
 #![allow(unsafe_code)]
 
 use super::real::{Lanes, Real, Two};
+use super::vector::Row4;
 
 /// A loop over rows side by side. Every width of lanes gives the same bits.
 pub trait Kernel<R: Real> {
@@ -35,4 +36,41 @@ pub unsafe fn run<R: Real>(kernel: impl Kernel<R>) {
 unsafe fn run_avx2<R: Real>(kernel: impl Kernel<R>) {
     // SAFETY: the caller's promise.
     unsafe { kernel.run::<R::Wide>() };
+}
+
+/// The numbers of the rows from one on, side by side, as many as there are lanes; beyond the last row, those of the last.
+#[inline(always)]
+pub fn load<R: Real, L: Lanes<R>>(rows: &[Row4<R>], first: usize) -> [L; 4] {
+    L::transpose([
+        load_fourth(rows, first),
+        load_fourth(rows, first + 1),
+        load_fourth(rows, first + 2),
+        load_fourth(rows, first + 3),
+    ])
+}
+
+/// A row of each four.
+#[inline(always)]
+fn load_fourth<R: Real, L: Lanes<R>>(rows: &[Row4<R>], first: usize) -> L {
+    L::of_groups(|group| rows[(first + 4 * group).min(rows.len() - 1)].0)
+}
+
+/// Writes numbers side by side to the rows from one on, as many as there are.
+#[inline(always)]
+pub fn store<R: Real, L: Lanes<R>>(rows: &mut [Row4<R>], first: usize, numbers: [L; 4]) {
+    let [a, b, c, d] = L::transpose(numbers);
+    store_fourth(rows, first, a);
+    store_fourth(rows, first + 1, b);
+    store_fourth(rows, first + 2, c);
+    store_fourth(rows, first + 3, d);
+}
+
+/// Writes a row of each four.
+#[inline(always)]
+fn store_fourth<R: Real, L: Lanes<R>>(rows: &mut [Row4<R>], first: usize, lanes: L) {
+    lanes.for_groups(|group, row| {
+        if let Some(to) = rows.get_mut(first + 4 * group) {
+            *to = Row4(row);
+        }
+    });
 }
