@@ -9,11 +9,12 @@ use crate::contact::cloth::contact_list::Replaced;
 use crate::contact::cloth::contacts::{ClothContacts, GROUPS_PER_TASK, SearchBuffers, TASKS_AT_A_TIME};
 use crate::contact::cloth::found_contacts::FoundContacts;
 use crate::contact::cloth::intersections::find_intersections;
-use crate::contact::cloth::motion_bounds::{BoundPredictor, Trajectory};
+use crate::contact::cloth::motion_bounds::{BoundPredictor, MarkViolations, Trajectory};
 use crate::contact::cloth::near_pairs::ClothPair;
 use crate::contact::cloth::search::{ClothSearch, RefreshKind, SearchInput};
 use crate::contact::system::{ContactPass, ContactSystem};
 use crate::input::frame::FrameInput;
+use crate::math::kernel;
 use crate::math::{Real, scale, sub};
 use crate::model::{ClothModel, Model};
 use crate::parallel::disjoint::DisjointSlice;
@@ -103,18 +104,21 @@ fn find_violations<R: Real>(
     let bounds_violated = DisjointSlice::new(bounds_violated);
     for cloth in cloths {
         pool.parallel_for(cloth.blocks.len(), |block| {
-            let mut any_here = false;
-            for row in cloth.blocks.range(block) {
-                let is_inside = trajectories.of(row).contains(share, state.displacement[row as usize].xyz());
-                // SAFETY: blocks do not overlap.
-                #[allow(unsafe_code)]
-                unsafe {
-                    let is_violated = !is_inside || bounds_violated.get(row);
-                    any_here |= is_violated;
-                    bounds_violated.set(row, is_violated);
-                }
+            let points = cloth.blocks.range(block);
+            let rows = points.start as usize..points.end as usize;
+            // SAFETY: blocks do not overlap.
+            #[allow(unsafe_code)]
+            unsafe {
+                let is_violated = bounds_violated.run(points);
+                kernel::run(MarkViolations {
+                    displacement: &state.displacement[rows.clone()],
+                    origin: &trajectories.origin[rows.clone()],
+                    travel: &trajectories.travel[rows],
+                    is_violated: &mut *is_violated,
+                    share,
+                });
+                any.fetch_or(is_violated.contains(&true), Ordering::Relaxed);
             }
-            any.fetch_or(any_here, Ordering::Relaxed);
         });
     }
     any.into_inner()

@@ -6,7 +6,8 @@
 
 use std::ops::Range;
 
-use crate::math::{Real, Row4, add, dot, scale, sub};
+use crate::math::kernel::{Kernel, load};
+use crate::math::{Lanes, Real, Row4, add, dot, scale, sub};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::particles::population::close_up;
 use crate::schedule::{StepInterval, TimeInterval};
@@ -36,13 +37,6 @@ impl<R: Real> Trajectory<R> {
     #[inline(always)]
     pub fn at(&self, share: R) -> [R; 3] {
         add(self.origin, scale(self.travel, share))
-    }
-
-    /// Whether a displacement is within the radius at a share of the interval.
-    #[inline(always)]
-    pub fn contains(&self, share: R, displacement: [R; 3]) -> bool {
-        let away = sub(displacement, self.at(share));
-        dot(away, away) <= self.radius * self.radius
     }
 }
 
@@ -114,6 +108,44 @@ impl<R: Real> SharedTrajectories<'_, R> {
         unsafe {
             self.origin.set(point, Row4([a, b, c, trajectory.radius]));
             self.travel.set(point, Row4([x, y, z, R::ZERO]));
+        }
+    }
+}
+
+/// Marks the points of a run that are not within their bounds; those marked before stay so.
+pub struct MarkViolations<'a, R> {
+    /// Displacements in metres, one of each point, as in all columns.
+    pub displacement: &'a [Row4<R>],
+    /// Of [`Trajectories`].
+    pub origin: &'a [Row4<R>],
+    /// Of [`Trajectories`].
+    pub travel: &'a [Row4<R>],
+    /// The marks.
+    pub is_violated: &'a mut [bool],
+    /// The time, as a share of the candidate interval.
+    pub share: R,
+}
+
+impl<R: Real> Kernel<R> for MarkViolations<'_, R> {
+    /// # Safety
+    /// The machine has the lanes.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    unsafe fn run<L: Lanes<R>>(self) {
+        let Self { displacement, origin, travel, is_violated, share } = self;
+        let share = L::splat(share);
+        let width = 4 * L::GROUPS;
+        for (run, marks) in is_violated.chunks_mut(width).enumerate() {
+            let first = run * width;
+            let [x, y, z, _] = load::<R, L>(displacement, first);
+            let [a, b, c, radius] = load::<R, L>(origin, first);
+            let [u, v, w, _] = load::<R, L>(travel, first);
+            let away = [x - (a + u * share), y - (b + v * share), z - (c + w * share)];
+            // A displacement that is no number is outside.
+            let inside = (radius * radius - dot(away, away)).above_zero();
+            for (lane, mark) in marks.iter_mut().enumerate() {
+                *mark |= inside & (1 << lane) == 0;
+            }
         }
     }
 }
