@@ -6,14 +6,14 @@
 //! step had made it, it let a liquid leave a floor that starts at 8 m/s with 29 m/s, and one that a piston left no room
 //! reached 37 km/s.
 
-use crate::math::{dot, sub};
-use crate::parallel::disjoint::DisjointSlice;
+use crate::math::{Lanes, Real, Two};
 use crate::parallel::thread_pool::ThreadPool;
 
 use super::grid::CellGrid;
-use super::kernel::{REACH, weight};
+use super::kernel::REACH;
+use super::near::{CellBlocks, LANES, far_position};
 use super::neighbours::{CHUNK, Neighbours, chunk_range};
-use super::walls::Walls;
+use super::walls::{NearWalls, Walls};
 
 /// Rate at which an excess of density that the solver has left goes, in 1/s.
 const RECOVERY: f32 = 10.0;
@@ -52,9 +52,20 @@ pub struct Excess {
     /// All before the time step; 0 where it is not measured.
     pub before: Vec<f32>,
     measured: Vec<u32>,
-    densities: Vec<f32>,
     grid: CellGrid,
-    sorted: Vec<[f32; 3]>,
+    /// Positions by axis, in the order of the grid, with eight far ones at the end.
+    columns: [Vec<f32>; 3],
+    tasks: Vec<Measurement>,
+}
+
+/// The densities of the particles of a task.
+#[derive(Debug, Default)]
+struct Measurement {
+    about: CellBlocks,
+    walls: NearWalls,
+    places: Vec<[f32; 4]>,
+    /// Density; what follows is not used.
+    sums: Vec<[f32; 4]>,
 }
 
 impl Excess {
@@ -72,35 +83,74 @@ impl Excess {
 
     /// Measures the chosen particles in positions and walls at the start of the time step, in rest distances.
     pub fn measure(&mut self, positions: &[[f32; 3]], walls: &Walls, pool: &ThreadPool) {
-        self.grid.sort(positions, REACH);
-        self.sorted.clear();
-        self.sorted.extend(self.grid.order().iter().map(|&particle| positions[particle as usize]));
-        let Self { measured, densities, grid, sorted, .. } = self;
-        densities.clear();
-        densities.resize(measured.len(), 0.0);
-        let out = DisjointSlice::new(densities);
-        pool.parallel_for(measured.len().div_ceil(CHUNK as usize), |chunk| {
-            let range = chunk_range(chunk, measured.len());
-            // SAFETY: chunks do not overlap.
-            #[allow(unsafe_code)]
-            let out = unsafe { out.run(range.clone()) };
-            for (out, at) in out.iter_mut().zip(range) {
-                let place = positions[measured[at as usize] as usize];
-                grid.visit_runs(grid.cell(place), |run| {
-                    let apart = sorted[run].iter().map(|&other| sub(place, other));
-                    *out += apart.map(|apart| weight(dot(apart, apart).sqrt())).sum::<f32>();
-                });
-                walls.near(place, |density, _, _| *out += density);
-            }
+        let Self { measured, grid, columns, tasks, before, .. } = self;
+        grid.sort(positions, REACH);
+        for (axis, column) in columns.iter_mut().enumerate() {
+            column.clear();
+            column.extend(grid.order().iter().map(|&particle| positions[particle as usize][axis]));
+            column.resize(positions.len() + LANES, far_position()[axis]);
+        }
+        let count = measured.len().div_ceil(CHUNK as usize);
+        tasks.resize_with(tasks.len().max(count), Measurement::default);
+        pool.for_each_mut(&mut tasks[..count], |task, found| {
+            let range = chunk_range(task, measured.len());
+            found.places.clear();
+            found.places.extend(measured[range.start as usize..range.end as usize].iter().map(|&at| {
+                let [x, y, z] = positions[at as usize];
+                [x, y, z, 0.0]
+            }));
+            found.measure((grid, columns), walls);
         });
-        for (&particle, &density) in self.measured.iter().zip(&self.densities) {
-            self.before[particle as usize] = (density - 1.0).max(0.0);
+        let sums = tasks[..count].iter().flat_map(|task| &task.sums);
+        for (&particle, sum) in measured.iter().zip(sums) {
+            before[particle as usize] = (sum[0] - 1.0).max(0.0);
         }
     }
 
     /// Begins a frame with what was measured: the solver has left all of it.
     pub fn begin(&mut self) {
         self.left.clone_from(&self.before);
+    }
+}
+
+impl Measurement {
+    /// Sums over all particles, in the order of a grid, and over walls.
+    fn measure(&mut self, particles: (&CellGrid, &[Vec<f32>; 3]), walls: &Walls) {
+        self.about.clear();
+        self.sums.clear();
+        self.sum(particles);
+        self.walls.find(walls, &self.places, &mut self.sums);
+    }
+
+    fn sum(&mut self, particles: (&CellGrid, &[Vec<f32>; 3])) {
+        #[cfg(target_arch = "x86_64")]
+        if f32::has_wide_lanes() {
+            // SAFETY: the machine has AVX2.
+            #[allow(unsafe_code)]
+            return unsafe { self.sum_avx2(particles) };
+        }
+        self.sum_lanes::<Two<<f32 as Real>::Lanes>>(particles);
+    }
+
+    /// # Safety
+    /// The machine has AVX2.
+    #[cfg(target_arch = "x86_64")]
+    #[allow(unsafe_code)]
+    #[target_feature(enable = "avx2")]
+    unsafe fn sum_avx2(&mut self, particles: (&CellGrid, &[Vec<f32>; 3])) {
+        self.sum_lanes::<<f32 as Real>::Wide>(particles);
+    }
+
+    #[inline(always)]
+    fn sum_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
+        &mut self,
+        (grid, columns): (&CellGrid, &[Vec<f32>; 3]),
+    ) {
+        let Self { about, places, sums, .. } = self;
+        for &[x, y, z, _] in &*places {
+            about.enter(grid, grid.cell([x, y, z]));
+            sums.push([about.density::<W>(columns, [x, y, z]), 0.0, 0.0, 0.0]);
+        }
     }
 }
 

@@ -47,6 +47,16 @@ pub fn half_space(q: f32) -> [f32; 2] {
     [all, -sheet]
 }
 
+/// The weight S of a sheet of liquid at several distances, which are not negative: what [`half_space`] changes by.
+#[inline(always)]
+pub fn sheet<W: Lanes<f32>>(q: W) -> W {
+    let zero = W::splat(0.0);
+    let (outer, inner) = ((W::splat(2.0) - q).most(zero), (W::splat(1.0) - q).most(zero));
+    let [outer_square, inner_square] = [outer * outer, inner * inner];
+    outer_square * outer_square * (W::splat(0.25) - outer * W::splat(0.1))
+        - inner_square * inner_square * (W::splat(0.5) - inner * W::splat(0.4))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,7 +14,7 @@
 //! | neighbour search | [`grid`], [`neighbours`], [`near`], [`pair`] |
 //! | density, and the solver of pressure | [`density`] |
 //! | how fast an excess of density goes | [`excess`] |
-//! | ground plane, colliders, cloth and other particles beside a liquid | `find_walls`, [`walls`], [`ball`] |
+//! | ground plane, colliders, cloth and other particles beside a liquid | `find_walls`, [`walls`], `wall_samples`, [`ball`] |
 //! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
 //! | how long its time steps are | [`time_step`] |
 
@@ -31,6 +31,7 @@ pub mod step;
 pub mod surface_tension;
 pub mod time_step;
 pub mod viscosity;
+mod wall_samples;
 pub mod walls;
 
 use nalgebra::Vector3;

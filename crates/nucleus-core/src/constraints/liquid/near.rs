@@ -4,7 +4,7 @@
 //! each other in memory. A particle tests a block at a time and lists those within reach; the kernel takes the list eight at
 //! a time, of which the last are filled up with a far particle, whose kernel is 0.
 
-use crate::math::Lanes;
+use crate::math::{Lanes, dot, sub};
 
 use super::grid::CellGrid;
 use super::kernel::{REACH, weights_and_slopes};
@@ -77,12 +77,68 @@ pub fn far_position() -> [f32; 4] {
     [FAR, FAR, FAR, Pair::tag(0)]
 }
 
+/// What is about a cell, in blocks of up to eight that follow each other in the sorted order.
+#[derive(Debug, Default)]
+pub struct CellBlocks {
+    cell: Option<[u32; 3]>,
+    /// The first of each block, and how many there are.
+    blocks: Vec<[u32; 2]>,
+}
+
+impl CellBlocks {
+    /// Forgets the cell, before the grid changes.
+    pub fn clear(&mut self) {
+        self.cell = None;
+    }
+
+    /// Lists what is about a cell; of the same cell it is known.
+    #[inline(always)]
+    pub fn enter(&mut self, grid: &CellGrid, cell: [u32; 3]) {
+        if self.cell != Some(cell) {
+            self.list(grid, cell);
+        }
+    }
+
+    fn list(&mut self, grid: &CellGrid, cell: [u32; 3]) {
+        self.cell = Some(cell);
+        self.blocks.clear();
+        grid.visit_runs(cell, |run| {
+            for first in run.clone().step_by(LANES) {
+                self.blocks.push([first as u32, (run.end - first).min(LANES) as u32]);
+            }
+        });
+    }
+
+    /// The density at a place in the cell, by the positions of particles by axis, with eight far ones at the end.
+    #[inline(always)]
+    pub fn density<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
+        &self,
+        [xs, ys, zs]: &[Vec<f32>; 3],
+        [x, y, z]: [f32; 3],
+    ) -> f32 {
+        let centre = [W::splat(x), W::splat(y), W::splat(z)];
+        let mut sum = W::splat(0.0);
+        for &[first, count] in &self.blocks {
+            let first = first as usize;
+            let apart = sub(centre, [load::<W>(xs, first), load(ys, first), load(zs, first)]);
+            let [weight, _] = weights_and_slopes(dot(apart, apart).sqrt());
+            let is_listed = W::splat(count as f32) - lane_numbers::<W>();
+            sum = sum + is_listed.choose_by_sign(weight, W::splat(0.0));
+        }
+        total(sum)
+    }
+
+    /// The first of each block, and how many there are.
+    #[inline(always)]
+    pub fn blocks(&self) -> &[[u32; 2]] {
+        &self.blocks
+    }
+}
+
 /// The particles about a cell.
 #[derive(Debug, Default)]
 pub struct Surroundings {
-    cell: Option<[u32; 3]>,
-    /// The first of each block of eight, and the mask of those that are about the cell.
-    blocks: Vec<[u32; 2]>,
+    about: CellBlocks,
     /// Particles within reach of one.
     near: Vec<u32>,
 }
@@ -90,7 +146,7 @@ pub struct Surroundings {
 impl Surroundings {
     /// Forgets the cell, before a new search.
     pub fn clear(&mut self) {
-        self.cell = None;
+        self.about.clear();
     }
 
     /// Adds the pairs of a particle, which is `at` in the sorted order, to a list.
@@ -102,10 +158,8 @@ impl Surroundings {
         pairs: &mut Vec<Pair>,
     ) -> PairSums {
         let [x, y, z, _] = sorted.positions[at as usize];
-        let cell = sorted.grid.cell([x, y, z]);
-        if self.cell != Some(cell) {
-            self.enter(sorted.grid, cell);
-        }
+        self.about.enter(sorted.grid, sorted.grid.cell([x, y, z]));
+        self.near.resize((self.about.blocks.len() + 1) * LANES, 0);
         let place = [x, y, z].map(W::splat);
         let count = self.list_near(sorted, place, at);
         let first = pairs.len();
@@ -113,19 +167,6 @@ impl Surroundings {
         pairs.truncate(first + count);
         pairs.resize(first + count.next_multiple_of(PAIRS), Pair::new([0.0; 3], at));
         sums
-    }
-
-    /// Lists the particles about a cell.
-    fn enter(&mut self, grid: &CellGrid, cell: [u32; 3]) {
-        self.cell = Some(cell);
-        self.blocks.clear();
-        grid.visit_runs(cell, |run| {
-            for first in run.clone().step_by(LANES) {
-                let lanes = (run.end - first).min(LANES);
-                self.blocks.push([first as u32, 0xff >> (LANES - lanes)]);
-            }
-        });
-        self.near.resize((self.blocks.len() + 1) * LANES, 0);
     }
 
     /// Lists the particles within reach, but for the particle itself, and far ones up to a full eight. Returns their number.
@@ -139,13 +180,13 @@ impl Surroundings {
         let reach = W::splat(REACH * REACH);
         let [xs, ys, zs] = sorted.columns.each_ref().map(|column| &column[..sorted.columns[0].len()]);
         let mut count = 0;
-        for &[first, lanes] in &self.blocks {
-            let block = first as usize..first as usize + LANES;
-            let x = place[0] - W::from_array(eight(&xs[block.clone()]));
-            let y = place[1] - W::from_array(eight(&ys[block.clone()]));
-            let z = place[2] - W::from_array(eight(&zs[block]));
+        for &[first, listed] in &self.about.blocks {
+            let x = place[0] - load::<W>(xs, first as usize);
+            let y = place[1] - load::<W>(ys, first as usize);
+            let z = place[2] - load::<W>(zs, first as usize);
             let own = 1u32.checked_shl(at.wrapping_sub(first)).unwrap_or(0);
-            let mask = (reach - (x * x + y * y + z * z)).above_zero() & lanes & !own;
+            let mask =
+                (reach - (x * x + y * y + z * z)).above_zero() & (0xff >> (LANES as u32 - listed)) & !own;
             // Eight are written at a time, and those that are too far overwritten: this needs no branch.
             let lanes = &LANES_OF_MASKS[mask as usize & 0xff];
             let out = &mut self.near[count..count + LANES];
@@ -171,7 +212,11 @@ impl Surroundings {
         let (eights, _) = self.near[..count.next_multiple_of(LANES)].as_chunks::<LANES>();
         for near in eights {
             let row = |k: usize| positions[near[k] as usize];
-            let rows = [0, 1, 2, 3].map(|k: usize| W::from_array([row(k), row(k + 4)]));
+            // A loop, because maps over arrays are not inlined.
+            let mut rows = [zero; 4];
+            for k in 0..4 {
+                rows[k] = W::from_array([row(k), row(k + 4)]);
+            }
             let [x, y, z, tags] = W::transpose(rows);
             let [x, y, z] = [place[0] - x, place[1] - y, place[2] - z];
             let distance = (x * x + y * y + z * z).sqrt();
@@ -186,18 +231,28 @@ impl Surroundings {
             let eight: [Pair; LANES] = std::array::from_fn(|k| Pair::from_row(rows[k % 4][k / 4]));
             pairs.extend_from_slice(&eight);
         }
-        let [weight, x, y, z, squares] = sums.map(|sum| {
-            let [low, high] = sum.to_array();
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| low[k] + high[k]);
-            (a + b) + (c + d)
-        });
+        let [weight, x, y, z, squares] = sums.map(total);
         PairSums { density: [weight, x, y, z], squares }
     }
 }
 
-/// Eight numbers as two times four.
+/// Eight numbers of a column from one on.
 #[inline(always)]
-fn eight(numbers: &[f32]) -> [[f32; 4]; 2] {
-    let (fours, _) = numbers.as_chunks::<4>();
-    [fours[0], fours[1]]
+pub fn load<W: Lanes<f32, Array = [[f32; 4]; 2]>>(column: &[f32], first: usize) -> W {
+    let (fours, _) = column[first..first + LANES].as_chunks::<4>();
+    W::from_array([fours[0], fours[1]])
+}
+
+/// The sum of all lanes.
+#[inline(always)]
+pub fn total<W: Lanes<f32, Array = [[f32; 4]; 2]>>(lanes: W) -> f32 {
+    let [low, high] = lanes.to_array();
+    let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| low[k] + high[k]);
+    (a + b) + (c + d)
+}
+
+/// The number of each lane.
+#[inline(always)]
+pub fn lane_numbers<W: Lanes<f32, Array = [[f32; 4]; 2]>>() -> W {
+    W::from_array([[0.0, 1.0, 2.0, 3.0], [4.0, 5.0, 6.0, 7.0]])
 }

@@ -10,7 +10,7 @@ use super::grid::CellGrid;
 use super::kernel::{REACH, weight};
 use super::near::{LANES, Sorted, Surroundings, far_position};
 use super::pair::Pair;
-use super::walls::Walls;
+use super::walls::{NearWalls, Walls};
 
 /// Particles of a task.
 pub const CHUNK: u32 = 256;
@@ -21,9 +21,7 @@ pub struct Chunk {
     pairs: Vec<Pair>,
     /// End of each particle's pairs.
     ends: Vec<u32>,
-    /// Pairs with walls that can move, and the end of each particle's.
-    wall_pairs: Vec<Pair>,
-    wall_ends: Vec<u32>,
+    walls: NearWalls,
     surroundings: Surroundings,
 }
 
@@ -82,7 +80,7 @@ impl Neighbours {
                 (chunk, sums.run(range.clone()), squares.run(range.clone()))
             };
             chunk.find(sorted, range.clone(), (sums, squares));
-            chunk.find_walls(walls, &positions[range.start as usize..range.end as usize], sums);
+            chunk.walls.find(walls, &positions[range.start as usize..range.end as usize], sums);
         });
     }
 
@@ -100,12 +98,15 @@ impl Neighbours {
         first as usize..ends[k] as usize
     }
 
+    /// The end of the pairs of each particle of a chunk.
+    pub fn ends(&self, chunk: usize) -> &[u32] {
+        &self.chunks[chunk].ends
+    }
+
     /// The pairs of a particle with walls that can move.
     #[inline(always)]
     pub fn walls_of(&self, chunk: usize, k: usize) -> &[Pair] {
-        let chunk = &self.chunks[chunk];
-        let first = if k == 0 { 0 } else { chunk.wall_ends[k - 1] };
-        &chunk.wall_pairs[first as usize..chunk.wall_ends[k] as usize]
+        self.chunks[chunk].walls.pairs_of(k)
     }
 
     /// A value of each particle, with its pairs with walls that can move.
@@ -216,19 +217,6 @@ impl Chunk {
             for axis in 0..4 {
                 out[axis] = (a[axis] + b[axis]) + (c[axis] + d[axis]);
             }
-        }
-    }
-
-    fn find_walls(&mut self, walls: &Walls, positions: &[[f32; 4]], sums: &mut [[f32; 4]]) {
-        self.wall_pairs.clear();
-        self.wall_ends.clear();
-        for ([x, y, z, _], sum) in positions.iter().zip(sums) {
-            walls.near([*x, *y, *z], |density, gradient, sample| {
-                sum[0] += density;
-                (0..3).for_each(|axis| sum[axis + 1] += gradient[axis]);
-                self.wall_pairs.extend(sample.map(|other| Pair::new(gradient, other)));
-            });
-            self.wall_ends.push(self.wall_pairs.len() as u32);
         }
     }
 }

@@ -10,24 +10,14 @@
 //! particle of another object is a sample that weighs as a ball of liquid, so that two liquids share the volume, and the heavier
 //! one sinks.
 
-use std::f32::consts::PI;
+use crate::math::{Lanes, Real, Two};
 
-use super::ball::BallKernel;
-use super::grid::CellGrid;
-use super::kernel::{REACH, half_space, weight};
+use super::kernel::{REACH, half_space};
+use super::near::CellBlocks;
 use super::pair::Pair;
+use super::wall_samples::{GAP, Samples};
 
-/// How far behind a surface the liquid begins that it counts as: the layers of particles beside it weigh as much as a
-/// half-space that begins there.
-const GAP: f32 = 0.03;
-/// Distance of samples in rest distances, at most.
-const SAMPLE_DISTANCE: f32 = 0.4;
-/// Distance from a sample below which its weight no longer grows.
-const NEAREST: f32 = 0.2;
-/// Distance of particles from the surface that they rest on.
-const WALL_DISTANCE: f32 = 0.5;
-/// Samples along and across a triangle, at most: beyond, samples weigh more.
-const MAX_ROWS: u32 = 2048;
+pub use super::wall_samples::Material;
 
 /// How far beyond the liquid the samples of surfaces at rest reach when they are made, in rest distances.
 const REGION_MARGIN: f32 = 3.0;
@@ -69,25 +59,6 @@ pub struct Corner {
     pub inverse_mass: f32,
     /// Displacement.
     pub moved: [f32; 3],
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    /// Area of a part of a surface.
-    area: f32,
-    /// Of a particle of another object, the place of its kernel in `balls`.
-    ball: Option<u32>,
-    offset: f32,
-    /// Places in `corners`, and weights; none for colliders.
-    corners: Option<[u32; 3]>,
-    shares: [f32; 3],
-}
-
-/// A surface that is covered with samples.
-#[derive(Debug, Clone, Copy)]
-pub struct Material {
-    /// Distance at which particles rest on it.
-    pub distance: f32,
 }
 
 impl Walls {
@@ -148,11 +119,7 @@ impl Walls {
         // A place that is not a number is near nothing.
         if (0..3).all(|k| low[k] - reach <= place[k] && place[k] <= high[k] + reach) {
             let corner = self.corner(corner);
-            let (corners, shares) = (Some([corner; 3]), [1.0, 0.0, 0.0]);
-            let ball = Some(self.moving.ball(radius));
-            self.moving.max_offset = self.moving.max_offset.max(radius);
-            self.moving.places.push(place);
-            self.moving.samples.push(Sample { area: 0.0, ball, offset: radius, corners, shares });
+            self.moving.add_ball(place, corner, radius);
         }
     }
 
@@ -165,22 +132,21 @@ impl Walls {
     pub fn sort(&mut self) {
         self.moving.sort();
         self.moved.clear();
-        self.moved.resize(if self.corners.is_empty() { 0 } else { self.moving.samples.len() }, [0.0; 3]);
+        self.moved.resize(if self.corners.is_empty() { 0 } else { self.moving.all().len() }, [0.0; 3]);
     }
 
-    /// Calls `add` with the density of each wall near a place, its gradient, and the sample if it can move.
-    #[inline]
-    pub fn near(&self, place: [f32; 3], mut add: impl FnMut(f32, [f32; 3], Option<u32>)) {
-        if let Some(Plane { normal, height, offset }) = self.plane {
-            let distance =
-                height + normal[0] * place[0] + normal[1] * place[1] + normal[2] * place[2] + GAP - offset;
-            if distance < REACH {
-                let [density, slope] = half_space(distance.max(0.0));
-                add(density, normal.map(|x| x * slope), None);
-            }
-        }
-        self.still.near(place, &mut add);
-        self.moving.near(place, &mut add);
+    /// The density that all walls add at a place, and its gradient; adds the pairs with samples that can move.
+    #[inline(always)]
+    fn near<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
+        &self,
+        place: [f32; 3],
+        [of_still, of_moving]: &mut [CellBlocks; 2],
+        pairs: &mut Vec<Pair>,
+    ) -> [f32; 4] {
+        let of_plane = self.plane.map_or([0.0; 4], |plane| plane.near(place));
+        let of_still = self.still.near::<W>(place, of_still, pairs);
+        let of_moving = self.moving.near::<W>(place, of_moving, pairs);
+        std::array::from_fn(|k| of_plane[k] + of_still[k] + of_moving[k])
     }
 
     /// Term of the mobility of cloth in the diagonal entry of a particle.
@@ -188,7 +154,7 @@ impl Walls {
     pub fn mobility(&self, pairs: &[Pair]) -> f32 {
         let of = |pair: &Pair| {
             let [x, y, z] = pair.gradient();
-            let sample = &self.moving.samples[pair.other()];
+            let sample = &self.moving.all()[pair.other()];
             let masses = sample.corners.into_iter().flatten().zip(sample.shares);
             let mobility: f32 = masses
                 .map(|(corner, share)| share * share * self.corners[corner as usize].inverse_mass)
@@ -217,7 +183,7 @@ impl Walls {
         for (lambda, pairs) in pushes {
             for pair in pairs {
                 let gradient = pair.gradient();
-                let sample = self.moving.samples[pair.other()];
+                let sample = self.moving.all()[pair.other()];
                 for (corner, share) in sample.corners.into_iter().flatten().zip(sample.shares) {
                     let corner = &mut self.corners[corner as usize];
                     let push = lambda * share * corner.inverse_mass;
@@ -225,7 +191,7 @@ impl Walls {
                 }
             }
         }
-        for (moved, sample) in self.moved.iter_mut().zip(&self.moving.samples) {
+        for (moved, sample) in self.moved.iter_mut().zip(self.moving.all()) {
             let Some(corners) = sample.corners else { continue };
             let corners = corners.map(|corner| self.corners[corner as usize].moved);
             *moved = std::array::from_fn(|axis| (0..3).map(|k| corners[k][axis] * sample.shares[k]).sum());
@@ -233,182 +199,80 @@ impl Walls {
     }
 }
 
-/// Samples of surfaces, sorted into cells.
+impl Plane {
+    /// The density that it adds at a place, and its gradient.
+    fn near(&self, place: [f32; 3]) -> [f32; 4] {
+        let &Self { normal, height, offset } = self;
+        let distance =
+            height + normal[0] * place[0] + normal[1] * place[1] + normal[2] * place[2] + GAP - offset;
+        if distance >= REACH {
+            return [0.0; 4];
+        }
+        let [density, slope] = half_space(distance.max(0.0));
+        [density, normal[0] * slope, normal[1] * slope, normal[2] * slope]
+    }
+}
+
+/// The walls beside some particles that follow each other.
 #[derive(Debug, Default)]
-struct Samples {
-    places: Vec<[f32; 3]>,
-    samples: Vec<Sample>,
-    grid: CellGrid,
-    /// In the order of the grid: places, and the squared distance at which each begins to count.
-    sorted: Vec<[f32; 4]>,
-    max_offset: f32,
-    /// Kernels of particles of other objects, by radius.
-    balls: Vec<BallKernel>,
+pub struct NearWalls {
+    /// What is about the last cell, among samples at rest and among others.
+    about: [CellBlocks; 2],
+    /// Pairs with samples that can move, and the end of each particle's.
+    pairs: Vec<Pair>,
+    ends: Vec<u32>,
 }
 
-impl Samples {
-    fn clear(&mut self) {
-        self.places.clear();
-        self.samples.clear();
-        self.sorted.clear();
-        self.balls.clear();
-        self.max_offset = 0.0;
+impl NearWalls {
+    /// Adds the density of all walls at some places, and its gradient, to `sums`; lists the pairs with those that can move.
+    pub fn find(&mut self, walls: &Walls, places: &[[f32; 4]], sums: &mut [[f32; 4]]) {
+        #[cfg(target_arch = "x86_64")]
+        if f32::has_wide_lanes() {
+            // SAFETY: the machine has AVX2.
+            #[allow(unsafe_code)]
+            return unsafe { self.find_avx2(walls, places, sums) };
+        }
+        self.find_lanes::<Two<<f32 as Real>::Lanes>>(walls, places, sums);
     }
 
-    /// The place of the kernel of balls of this radius, of which there are as many as objects.
-    fn ball(&mut self, radius: f32) -> u32 {
-        let known = self.balls.iter().position(|ball| ball.radius == radius);
-        known.unwrap_or_else(|| {
-            self.balls.push(BallKernel::new(radius));
-            self.balls.len() - 1
-        }) as u32
+    /// # Safety
+    /// The machine has AVX2.
+    #[cfg(target_arch = "x86_64")]
+    #[allow(unsafe_code)]
+    #[target_feature(enable = "avx2")]
+    unsafe fn find_avx2(&mut self, walls: &Walls, places: &[[f32; 4]], sums: &mut [[f32; 4]]) {
+        self.find_lanes::<<f32 as Real>::Wide>(walls, places, sums);
     }
 
-    /// Covers a triangle with samples, where it is near a box: strips along its longest edge, cut by lines from the corner
-    /// opposite to it into parts of equal area.
-    fn cover(
+    #[inline(always)]
+    fn find_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
         &mut self,
-        triangle: [[f32; 3]; 3],
-        corners: Option<[u32; 3]>,
-        material: Material,
-        [low, high]: [[f32; 3]; 2],
+        walls: &Walls,
+        places: &[[f32; 4]],
+        sums: &mut [[f32; 4]],
     ) {
-        let offset = (material.distance - WALL_DISTANCE).max(0.0);
-        let reach = REACH + offset;
-        let [low, high] = [low.map(|x| x - reach), high.map(|x| x + reach)];
-        let beyond = |k: usize| {
-            triangle.iter().all(|corner| corner[k] < low[k])
-                || triangle.iter().all(|corner| corner[k] > high[k])
-        };
-        // A corner that is not a number is beyond nothing.
-        let is_finite = triangle.iter().flatten().all(|x| x.is_finite());
-        if !is_finite || (0..3).any(beyond) {
-            return;
-        }
-        let edge = |a: usize| length(minus(triangle[(a + 1) % 3], triangle[a]));
-        let [x, y, z] = [edge(0), edge(1), edge(2)];
-        let a = if x >= y && x >= z {
-            0
-        } else if y >= z {
-            1
-        } else {
-            2
-        };
-        let [a, b, c] = [a, (a + 1) % 3, (a + 2) % 3];
-        let base = edge(a);
-        let area = length(cross(minus(triangle[b], triangle[a]), minus(triangle[c], triangle[a]))) / 2.0;
-        self.max_offset = self.max_offset.max(offset);
-        let strips = parts(2.0 * area / base.max(f32::MIN_POSITIVE));
-        for strip in 0..strips {
-            // Heights of the strip as shares, and that of its centre.
-            let [t, s] = [strip, strip + 1].map(|k| k as f32 / strips as f32);
-            let share = (1.0 - t) * (1.0 - t) - (1.0 - s) * (1.0 - s);
-            let centre = ((s * s - t * t) - (s * s * s - t * t * t) * (2.0 / 3.0)) / share;
-            let across = parts(base * (1.0 - t));
-            let at = |u: f32| -> [f32; 3] {
-                let mut shares = [0.0; 3];
-                (shares[a], shares[b], shares[c]) = ((1.0 - centre) * (1.0 - u), (1.0 - centre) * u, centre);
-                shares
-            };
-            let place = |shares: [f32; 3]| -> [f32; 3] {
-                std::array::from_fn(|k| (0..3).map(|c| triangle[c][k] * shares[c]).sum())
-            };
-            let ends = [place(at(0.0)), place(at(1.0))];
-            for k in within(ends, [low, high], across) {
-                let shares = at((k as f32 + 0.5) / across as f32);
-                let place = place(shares);
-                if (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k]) {
-                    self.places.push(place);
-                    let area = area * share / across as f32;
-                    self.samples.push(Sample { area, ball: None, offset, corners, shares });
-                }
-            }
+        let Self { about, pairs, ends } = self;
+        about.iter_mut().for_each(CellBlocks::clear);
+        pairs.clear();
+        ends.clear();
+        for (&[x, y, z, _], sum) in places.iter().zip(sums) {
+            let added = walls.near::<W>([x, y, z], about, pairs);
+            (0..4).for_each(|k| sum[k] += added[k]);
+            ends.push(pairs.len() as u32);
         }
     }
 
-    /// Sorts the samples, once all are there.
-    fn sort(&mut self) {
-        if self.samples.is_empty() {
-            return;
-        }
-        self.grid.sort(&self.places, REACH + self.max_offset);
-        self.sorted.extend(self.grid.order().iter().map(|&at| {
-            let ([x, y, z], limit) =
-                (self.places[at as usize], REACH + self.samples[at as usize].offset - GAP);
-            [x, y, z, limit * limit]
-        }));
+    /// The pairs of a place with samples that can move.
+    #[inline(always)]
+    pub fn pairs_of(&self, k: usize) -> &[Pair] {
+        let first = if k == 0 { 0 } else { self.ends[k - 1] };
+        &self.pairs[first as usize..self.ends[k] as usize]
     }
-
-    #[inline]
-    fn near(&self, place: [f32; 3], add: &mut impl FnMut(f32, [f32; 3], Option<u32>)) {
-        if self.samples.is_empty() {
-            return;
-        }
-        self.grid.visit_runs(self.grid.cell(place), |run| {
-            for k in run {
-                let [x, y, z, limit] = self.sorted[k];
-                let apart = [place[0] - x, place[1] - y, place[2] - z];
-                let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                if square < limit {
-                    let at = self.grid.order()[k];
-                    let sample = &self.samples[at as usize];
-                    let (density, slope) = sample.density(square.sqrt().max(NEAREST), &self.balls);
-                    add(density, apart.map(|x| x * slope), sample.corners.map(|_| at));
-                }
-            }
-        });
-    }
-}
-
-impl Sample {
-    /// The density that it adds at a distance, and its derivative over the distance.
-    #[inline]
-    fn density(&self, distance: f32, balls: &[BallKernel]) -> (f32, f32) {
-        if let Some(ball) = self.ball {
-            let [density, slope] = balls[ball as usize].at(distance);
-            return (density, slope / distance);
-        }
-        let q = (distance + GAP - self.offset).max(0.0);
-        let part = self.area / (2.0 * PI * distance);
-        let sheet = -half_space(q)[1];
-        (part * sheet, -part * (2.0 * PI * q * weight(q) + sheet / distance) / distance)
-    }
-}
-
-/// The number of parts of a length.
-fn parts(length: f32) -> u32 {
-    ((length / SAMPLE_DISTANCE).ceil().min(MAX_ROWS as f32) as u32).max(1)
-}
-
-/// Those of so many parts of a segment that may be in a box.
-fn within([from, to]: [[f32; 3]; 2], [low, high]: [[f32; 3]; 2], parts: u32) -> std::ops::Range<u32> {
-    let (mut first, mut last) = (0.0f32, 1.0f32);
-    for k in 0..3 {
-        let along = to[k] - from[k];
-        if along.abs() > 1e-6 {
-            let [a, b] = [(low[k] - from[k]) / along, (high[k] - from[k]) / along];
-            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
-        }
-    }
-    let first = (first * parts as f32 - 1.0).max(0.0) as u32;
-    let last = (last * parts as f32 + 1.0).max(0.0) as u32;
-    first..last.min(parts).max(first)
-}
-
-fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn length(a: [f32; 3]) -> f32 {
-    (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::wall_samples::WALL_DISTANCE;
     use super::*;
 
     #[test]
@@ -419,12 +283,12 @@ mod tests {
             let triangle = [[-9.0, 0.0, -9.0], [0.0, 0.0, 18.0], [9.0, 0.0, -9.0]];
             walls.cover(triangle, None, Material { distance }, bounds);
             walls.sort();
-            let mut sum = [0.0f32; 2];
-            walls.near([0.1, distance, 0.05], |density, [_, y, _], _| sum = [sum[0] + density, sum[1] + y]);
+            let mut sum = [[0.0f32; 4]];
+            NearWalls::default().find(&walls, &[[0.1, distance, 0.05, 0.0]], &mut sum);
             let expected = half_space(WALL_DISTANCE)[0];
             // Measured: 7.7 % too little at 0.5.
-            assert!((sum[0] / expected - 1.0).abs() < 0.1, "{sum:?} of {expected} at {distance}");
-            assert!(sum[1] < 0.0, "it pushes away");
+            assert!((sum[0][0] / expected - 1.0).abs() < 0.1, "{sum:?} of {expected} at {distance}");
+            assert!(sum[0][2] < 0.0, "it pushes away");
         }
     }
 
@@ -434,7 +298,7 @@ mod tests {
             let mut walls = Walls::default();
             let triangle = [[bad, 0.0, -9.0], [0.0, 0.0, 18.0], [9.0, 0.0, -9.0]];
             walls.cover(triangle, None, Material { distance: 0.5 }, [[-1.0; 3], [1.0; 3]]);
-            assert!(walls.moving.samples.is_empty(), "{bad}");
+            assert!(walls.moving.all().is_empty(), "{bad}");
         }
     }
 }
