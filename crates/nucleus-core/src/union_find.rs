@@ -1,6 +1,7 @@
 //! Union-find: disjoint sets of points that are joined one pair at a time (Galler and Fischer 1964).
 
 /// Disjoint sets of points. A set is named by its lowest point.
+#[derive(Debug, Default)]
 pub struct UnionFind {
     /// A point of the same set that is no higher; a root points to itself.
     parent: Vec<u32>,
@@ -12,6 +13,14 @@ impl UnionFind {
     /// `points` sets of one point each.
     pub fn new(points: usize) -> Self {
         Self { parent: (0..points as u32).collect(), sizes: vec![1; points] }
+    }
+
+    /// The same, in the memory of older sets.
+    pub fn reset(&mut self, points: usize) {
+        self.parent.clear();
+        self.parent.extend(0..points as u32);
+        self.sizes.clear();
+        self.sizes.resize(points, 1);
     }
 
     /// The set of a point.

@@ -15,10 +15,11 @@
 //! | density, and the solver of pressure | [`density`] |
 //! | how fast an excess of density goes | [`excess`] |
 //! | ground plane, colliders, cloth and other particles beside a liquid | `find_walls`, [`walls`], `wall_samples`, [`ball`] |
-//! | viscosity and surface tension | [`viscosity`], [`surface_tension`] |
+//! | viscosity and surface tension | [`viscosity`], `connected_bodies`, [`surface_tension`] |
 //! | how long its time steps are | [`time_step`] |
 
 pub mod ball;
+mod connected_bodies;
 pub mod density;
 pub mod excess;
 mod find_walls;
@@ -152,6 +153,7 @@ impl LiquidSolver {
         if begins {
             self.pressure.clear();
             self.pressure.resize(rows.len(), 0.0);
+            self.viscosity.forget();
         }
         self.gather(scene, state, &step);
         self.find_walls(scene, state, &step);

@@ -11,7 +11,7 @@ pub struct Pair([f32; 4]);
 
 impl Pair {
     /// A neighbour by its number, below 2²⁹.
-    pub fn new([x, y, z]: [f32; 3], other: u32) -> Self {
+    pub const fn new([x, y, z]: [f32; 3], other: u32) -> Self {
         Self([x, y, z, Self::tag(other)])
     }
 
@@ -42,7 +42,7 @@ impl Pair {
 
     /// The number of a particle as a finite scalar.
     #[inline(always)]
-    pub fn tag(number: u32) -> f32 {
+    pub const fn tag(number: u32) -> f32 {
         f32::from_bits(number + NORMAL)
     }
 }
