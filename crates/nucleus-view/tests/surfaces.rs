@@ -14,12 +14,12 @@ const SIDE: u32 = 12;
 const SPACING: f32 = 0.1;
 const GREEN: [f32; 3] = [0.0, 1.0, 0.0];
 
-/// Writes a cache of one frame: a cube of particles about the origin, whose balls leave gaps.
+/// Writes a cache of one frame: a cube of a liquid about the origin; balls of its particles leave gaps.
 fn write(path: &Path) {
-    write_with(path, None);
+    write_with(path, Some(f64::from(SPACING)));
 }
 
-/// The same, of a liquid with this distance at rest.
+/// The same with this distance at rest; of balls that are no liquid, if there is none.
 fn write_with(path: &Path, rest_distance: Option<f64>) {
     let at = |k: u32| (k as f32 - 0.5 * (SIDE - 1) as f32) * SPACING;
     let place = |k: u32| [at(k % SIDE), at(k / SIDE % SIDE), at(k / (SIDE * SIDE))];
@@ -72,6 +72,16 @@ fn the_surface_of_a_liquid_has_the_spacing_of_its_rest_distance() {
     write_with(&path, Some(1.5 * f64::from(SPACING)));
     let spacing = Playback::open(&path).unwrap().particle_spacing(0).unwrap().unwrap();
     assert!((spacing / SPACING - 1.5).abs() < 1e-3, "{spacing}");
+}
+
+#[test]
+fn the_surface_of_balls_that_are_no_liquid_encloses_their_volume() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    write_with(&path, None);
+    let spacing = Playback::open(&path).unwrap().particle_spacing(0).unwrap().unwrap();
+    let ball = 4.0 / 3.0 * std::f32::consts::PI * (0.15 * SPACING).powi(3);
+    assert!((spacing.powi(3) / ball - 1.0).abs() < 1e-3, "{spacing}");
 }
 
 fn get(address: SocketAddr, path: &str) -> (String, Vec<u8>) {
