@@ -109,7 +109,7 @@ pub use input::object_fields::{PointField, WindField};
 pub use input::particles::{
     CollisionEvent, ParticleChange, ParticleFacts, ParticleRamp, RampInput, RampTarget, unit_random,
 };
-pub use input::validation::{InvalidInput, MAX_COORDINATE, Sanitized};
+pub use input::validation::{InputNumber, InputRange, InputSubject, InvalidInput, MAX_COORDINATE, Sanitized};
 pub use input::{ClothId, ColliderId, PointId};
 pub use model::build_error::BuildError;
 pub use model::builder::ModelBuilder;

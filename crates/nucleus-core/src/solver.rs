@@ -13,7 +13,7 @@ use crate::contact::system::{ContactPass, ContactSystem};
 use crate::contact::time_step::ContactCounters;
 use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, ResistanceModel};
 use crate::input::links::Link;
-use crate::input::validation::{InvalidInput, LastPositions, sanitize};
+use crate::input::validation::{InvalidInput, LastPositions, first_out_of_range, sanitize};
 use crate::input::{ClothId, ColliderId, PointId};
 use crate::math::Real;
 use crate::model::builder::ModelBuilder;
@@ -199,8 +199,9 @@ impl<R: Real> Solver<R> {
     /// Checks the input of a frame.
     ///
     /// # Errors
-    /// The first value that [`step`](Self::step) would replace, or the first attribute that has no effect because the cloth
-    /// was built without its list.
+    /// The first number outside of the range that its documentation states, by object, field, value and range; the first value
+    /// that [`step`](Self::step) would replace; or the first attribute that has no effect because the cloth was built without its
+    /// list. It takes time for each number of the frame, and a step does not call it.
     pub fn check_frame(&self, frame: &FrameInput) -> Result<(), InvalidInput> {
         let without_list = || {
             let mut cloths = (0..).map(ClothId).zip(self.model.cloths.iter().zip(&frame.cloths));
@@ -209,7 +210,10 @@ impl<R: Real> Solver<R> {
                 Some(InvalidInput::NoList { cloth: id, attribute, list })
             })
         };
-        sanitize(frame, self).1.first.or_else(without_list).map_or(Ok(()), Err)
+        // A frame of another number of objects names others than the model has.
+        let is_whole = [frame.cloths.len(), frame.colliders.len()] == self.objects();
+        let named = is_whole.then(|| first_out_of_range(frame)).flatten();
+        named.or_else(|| sanitize(frame, self).1.first).or_else(without_list).map_or(Ok(()), Err)
     }
 
     /// The mass of a point in kilograms, when it is not pinned.

@@ -9,6 +9,7 @@
 //! | a pin, an input mesh, a link, an exclusion or a target of a field that does not exist | nothing: it is dropped |
 //! | a second input mesh of a cloth, an exclusion beyond the limit | nothing: it is dropped |
 //! | a birth or a change of a particle | nothing: it is dropped |
+//! | births that are not in the order of their times | the same ones, sorted; they are not counted |
 //! | gravity, wind, a force | zero |
 //! | substeps or evaluations beyond the limit | the limit |
 //! | any other attribute | its default |
@@ -17,6 +18,7 @@
 //! | You want to know… | Read |
 //! |---|---|
 //! | the range of an attribute | `attributes.rs` |
+//! | the documented range of every number, which `check_frame` demands | `ranges.rs` |
 //! | which constraints and exclusions are valid | `constraints.rs` |
 //! | which fields are valid | `fields.rs` |
 //! | which births and changes of particles are valid | `particles.rs` |
@@ -26,6 +28,7 @@ mod attributes;
 mod constraints;
 mod fields;
 mod particles;
+mod ranges;
 mod sanitized;
 
 use std::borrow::Cow;
@@ -37,6 +40,8 @@ use attributes::{is_duration, sanitize_cloth, sanitize_collider_settings, saniti
 use constraints::{are_exclusions, is_valid_constraint, sanitize_constraint, sanitize_exclusions};
 use fields::{are_valid_fields, sanitize_fields};
 use particles::{are_births, is_change, sanitize_particles};
+pub(crate) use ranges::first_out_of_range;
+pub use ranges::{InputNumber, InputRange, InputSubject};
 pub use sanitized::{InvalidInput, LastPositions, Sanitized};
 
 use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, InputMesh, Pin, StartVelocity};

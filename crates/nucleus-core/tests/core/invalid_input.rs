@@ -1,12 +1,13 @@
 //! An invalid value in the input of a frame is replaced and reported; the rest of the frame is solved as usual.
 
-use crate::scenes::{LINKS, Vec3, drape, frame, grid, one_cloth, physical, pins};
+use crate::scenes::{LINKS, Vec3, drape, frame, grid, ground, one_cloth, physical, pins};
 use std::sync::Arc;
 
 use nucleus_core::{
-    ClothFrame, ClothId, ClothLists, ColliderFrame, ColliderId, ExcludedSide, Exclusion, Field, FieldKind,
-    FrameInput, InputMesh, InvalidInput, MAX_COORDINATE, MAX_EXCLUSIONS, ParticleChange, Pin, PointId,
-    Pressure, Reach, ResistanceModel, Solver, StateView,
+    Birth, Cloth, ClothFrame, ClothId, ClothLists, ColliderFrame, ColliderId, ConstraintFrame, ExcludedSide,
+    Exclusion, Field, FieldKind, FrameInput, GroundPlane, InputMesh, InvalidInput, Link, LinkSide,
+    MAX_COORDINATE, MAX_EXCLUSIONS, Mass, ModelBuilder, ParticleChange, Particles, Pin, PointId, Pressure,
+    Reach, ResistanceModel, Solver, StateView, Surface,
 };
 
 /// The points of the ball at this height in metres.
@@ -173,6 +174,102 @@ fn check_frame_refuses_what_a_step_would_replace() {
 }
 
 #[test]
+fn check_frame_names_the_object_the_field_the_value_and_its_documented_range() {
+    type Plant = fn(&mut FrameInput);
+    let link = |sides: [LinkSide; 2]| ConstraintFrame {
+        formed: Some(vec![Link::new(sides, 0.0)]),
+        ..ConstraintFrame::default()
+    };
+    let plants: [(Plant, &str); 15] = [
+        (|input| input.substeps = 0, "`substeps` of the frame is 0; it must be from 1 to 1e5"),
+        (
+            |input| input.resistance = ResistanceModel::Physical { evaluations: 0.0 },
+            "`resistance.evaluations` of the frame is 0; it must be above 0, and at most 1e6",
+        ),
+        (
+            |input| input.resistance = ResistanceModel::Physical { evaluations: -3.0 },
+            "`resistance.evaluations` of the frame is -3; it must be above 0, and at most 1e6",
+        ),
+        (|input| input.gravity.y = f64::NAN, "`gravity` of the frame is NaN; it must be from -1e12 to 1e12"),
+        (
+            |input| input.plane = Some(GroundPlane { bounce: 99.0, ..ground(0.0) }),
+            "`bounce` of the ground plane is 99; it must be from 0 to 1",
+        ),
+        (|input| input.cloths[0].bounce = 99.0, "`bounce` of cloth 0 is 99; it must be from 0 to 1"),
+        (|input| input.cloths[0].stickiness = 99.0, "`stickiness` of cloth 0 is 99; it must be from 0 to 2"),
+        (
+            |input| input.cloths[0].tangential_drag = 9.0,
+            "`tangential_drag` of cloth 0 is 9; it must be from 0 to 1",
+        ),
+        (
+            |input| input.cloths[0].stiffness.warp = Some(-1.0),
+            "`stiffness.warp` of cloth 0 is -1; it must be from 0 to 1e12",
+        ),
+        (
+            |input| input.cloths[0].yield_strain = f64::NAN,
+            "`yield_strain` of cloth 0 is NaN; it must be at least 0",
+        ),
+        (|input| input.colliders[0].bounce = -0.5, "`bounce` of collider 0 is -0.5; it must be from 0 to 1"),
+        (
+            |input| input.colliders[0].friction = f64::INFINITY,
+            "`friction` of collider 0 is inf; it must be from 0 to 1e12",
+        ),
+        (
+            |input| input.constraints[0].motion_drag = 1.5,
+            "`motion_drag` of constraint 0 is 1.5; it must be from 0 to 1",
+        ),
+        (
+            |input| set_weights(input, [0.5, 0.5, 0.5]),
+            "`sum of weights` of link 0 of constraint 0 is 1.5; it must be from 0.9999 to 1.0001",
+        ),
+        (
+            |input| set_weights(input, [f64::NAN, 0.0, 0.0]),
+            "`weights` of link 0 of constraint 0 is NaN; it must be from -1e12 to 1e12",
+        ),
+    ];
+    let (builder, _) = drape(9, 24.0);
+    let solver: Solver = Solver::new(builder, 1);
+    let mut usual = solver.default_frame();
+    let points = [0, 1, 9].map(PointId);
+    let place = LinkSide::Cloth { cloth: ClothId(0), points, weights: [0.25, 0.25, 0.5] };
+    usual.constraints = vec![link([place, LinkSide::Space(Vec3::zeros())])];
+    assert_eq!(solver.check_frame(&usual), Ok(()));
+    for (plant, said) in plants {
+        let mut frame = usual.clone();
+        plant(&mut frame);
+        assert_eq!(solver.check_frame(&frame).unwrap_err().to_string(), said);
+    }
+}
+
+fn set_weights(input: &mut FrameInput, new: [f64; 3]) {
+    let links = input.constraints[0].formed.iter_mut().flatten();
+    for side in links.flat_map(|link| &mut link.sides) {
+        if let LinkSide::Cloth { weights, .. } = side {
+            *weights = new;
+        }
+    }
+}
+
+#[test]
+fn check_frame_refuses_births_that_are_not_in_the_order_of_their_times() {
+    let particles = Some(Particles { capacity: 4, ..Particles::default() });
+    let surface = Surface { positions: vec![Vec3::zeros()], ..Surface::default() };
+    let mut builder = ModelBuilder::new();
+    let beads = Cloth { particles, ..Cloth::new(surface, Mass::PerPoint(0.01), ClothLists::NONE) };
+    let cloth = builder.cloth(beads).expect("good particles");
+    let solver: Solver = Solver::new(builder, 1);
+    let birth =
+        |time| Birth { cloth, time, position: Vec3::x(), velocity: Vec3::y(), lifespan: f64::INFINITY };
+    let of = |times: [f64; 3]| FrameInput { births: times.map(birth).to_vec(), ..solver.default_frame() };
+    assert_eq!(solver.check_frame(&of([0.25, 0.25, 0.5])), Ok(()));
+    let refused = solver.check_frame(&of([0.25, 0.75, 0.5])).unwrap_err().to_string();
+    assert_eq!(
+        refused,
+        "`time` of birth 2 is 0.5, before 0.75 of the birth before it; `births` must be in the order of their times"
+    );
+}
+
+#[test]
 fn check_frame_refuses_an_attribute_whose_list_was_not_built() {
     type Set = fn(&mut ClothFrame);
     let attributes: [(Set, &str); 6] = [
@@ -268,9 +365,11 @@ fn a_frame_of_more_steps_than_ever_end_is_refused() {
     let (builder, usual) = drape(9, 24.0);
     let solver: Solver = Solver::new(builder, 1);
     let divided = FrameInput { substeps: u32::MAX, ..usual.clone() };
-    assert_eq!(solver.check_frame(&divided), Err(InvalidInput::Setting));
+    let refused = |frame| solver.check_frame(frame).unwrap_err().to_string();
+    assert_eq!(refused(&divided), "`substeps` of the frame is 4.294967295e9; it must be from 1 to 1e5");
     let evaluated = FrameInput { resistance: ResistanceModel::Physical { evaluations: 1e12 }, ..usual };
-    assert_eq!(solver.check_frame(&evaluated), Err(InvalidInput::Setting));
+    let said = "`resistance.evaluations` of the frame is 1e12; it must be above 0, and at most 1e6";
+    assert_eq!(refused(&evaluated), said);
 }
 
 #[test]

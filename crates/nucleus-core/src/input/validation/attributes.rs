@@ -18,11 +18,11 @@ pub const MAX_FACTOR: f64 = 1e6;
 pub(super) const MIN_DURATION: f64 = 1e-12;
 
 /// Limits of what a frame is divided into; more would never return. They are those of `subSteps` and `evaluations`.
-const MAX_SUBSTEPS: u32 = 100_000;
-const MAX_EVALUATIONS: f64 = 1e6;
+pub(super) const MAX_SUBSTEPS: u32 = 100_000;
+pub(super) const MAX_EVALUATIONS: f64 = 1e6;
 
 /// Least distance of the particles of a liquid in metres.
-const MIN_SPACING: f64 = 1e-6;
+pub(super) const MIN_SPACING: f64 = 1e-6;
 
 /// Whether a frame can last so long, in seconds.
 pub(super) fn is_duration(duration: f64) -> bool {

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::attributes::{MAX_COORDINATE, MIN_DURATION};
+use super::ranges::{InputNumber, InputRange, InputSubject};
 use crate::input::links::Link;
 use crate::input::{ClothId, ColliderId, PointId};
 
@@ -57,6 +58,32 @@ pub enum InvalidInput {
         attribute: &'static str,
         /// The field of [`ClothLists`](crate::ClothLists).
         list: &'static str,
+    },
+    /// A number outside of the range that its documentation states. Only [`Solver::check_frame`](crate::Solver::check_frame)
+    /// says so; a step names the object alone, and of numbers that it can compute with it replaces none.
+    #[error("`{field}` of {subject} is {value}; it must be {range}")]
+    OutOfRange {
+        /// Whose number it is.
+        subject: InputSubject,
+        /// Its field, with those that lead to it.
+        field: &'static str,
+        /// Its value.
+        value: InputNumber,
+        /// Its valid values.
+        range: InputRange,
+    },
+    /// A birth at an earlier time than the one before it in [`FrameInput::births`](crate::FrameInput::births). Only
+    /// [`Solver::check_frame`](crate::Solver::check_frame) says so; a step sorts them.
+    #[error(
+        "`time` of birth {birth} is {time}, before {before} of the birth before it; `births` must be in the order of their times"
+    )]
+    BirthOrder {
+        /// The index of the birth.
+        birth: u32,
+        /// Its time as a share of the frame.
+        time: InputNumber,
+        /// The time of the one before.
+        before: InputNumber,
     },
     /// An attribute of a collider.
     #[error("an attribute of collider {} is not a usable number", .0.0)]
