@@ -1,6 +1,6 @@
 //! Falls and swings, and conserved quantities.
 
-use nucleus_core::{BuildError, ClothLists, StateView, Stiffness};
+use nucleus_core::{BuildError, COUNT_PERIOD, ClothLists, StateView, Stiffness};
 
 use super::case::{Case, Comparison, Fixture, Tolerance};
 use crate::fixture::{CLOTH, DENSITY, GRAVITY, STRIP, Vec3, membrane, sheet, vertex_areas};
@@ -11,6 +11,17 @@ pub const CASES: &[Case] = &[
         description: "A rod of 1 m swings about a hinge. Its period over that of small swings is 1 / agm(1, cos(α / 2)).",
         known_failure: None,
         run: pendulum,
+    },
+    Case {
+        name: "pendulum-loss",
+        description: "The same rod swings undamped from 90° for 1,250 frames, 52 s: how far the highest point of its swing is \
+            then below the start. A time step h moves a point by its velocity and by gravity, and projects it back onto the \
+            circle: an angle δ of the step before becomes δ - δ³ - δ h² g cos θ / L, besides what gravity adds along the circle. \
+            The energy per mass falls by h ω² (ω² L + g cos θ) L in a second, h ω² L times the tension. This is of first order \
+            in the time step, as with implicit Euler; the reference integrates it over the swings. Four times the evaluations \
+            leave a quarter of the loss.",
+        known_failure: None,
+        run: pendulum_loss,
     },
     Case {
         name: "terminal-velocity",
@@ -65,6 +76,52 @@ fn swing(degrees: f64) -> Result<Comparison, BuildError> {
         found,
         Tolerance::Relative(0.005),
     ))
+}
+
+fn pendulum_loss() -> Result<Vec<Comparison>, BuildError> {
+    [96.0, 400.0, 1600.0].into_iter().map(loss).collect()
+}
+
+/// The loss of height at so many evaluations in 1/24 s.
+fn loss(evaluations: f64) -> Result<Comparison, BuildError> {
+    let frames = 1250;
+    let rods = sheet([2, 2], Vec3::zeros(), Vec3::z() * 0.5, Vec3::x());
+    let mut fixture = Fixture::new(rods, ClothLists { stretch: true, ..ClothLists::NONE }, evaluations)?;
+    fixture.cloth().stiffness = membrane(1e5);
+    fixture.pin([0, 1]);
+    let mass: f64 = vertex_areas(&fixture.surface)[2..].iter().sum::<f64>() * DENSITY;
+    let mut kinetic = 0.0;
+    for _ in 0..frames {
+        kinetic = fixture.step().kinetic_energy;
+    }
+    // Where its kinetic energy is used up.
+    let highest = fixture.point(2).y + kinetic / (mass * GRAVITY);
+    let seconds = f64::from(frames) * COUNT_PERIOD;
+    Ok(Comparison::new(
+        format!("loss of height, {evaluations} evaluations, m"),
+        lost_height(COUNT_PERIOD / evaluations, seconds),
+        -highest,
+        Tolerance::Relative(0.03),
+    ))
+}
+
+/// The height in metres that a rod of 1 m loses from 90° in time steps of `h` seconds: the cosine c of its largest angle grows by
+/// h ω² (ω² + g cos θ) / g in a second, in the mean over a swing, where ω² = 2 g (cos θ - c).
+fn lost_height(h: f64, seconds: f64) -> f64 {
+    let intervals = 2000;
+    (0..intervals).fold(0.0f64, |c, _| {
+        let largest = c.acos();
+        // With θ = α sin(u) the period's integrand is smooth at the turning point.
+        let samples = (0..200).map(|k| (f64::from(k) + 0.5) / 200.0 * std::f64::consts::FRAC_PI_2);
+        let [mut time, mut lost] = [0.0; 2];
+        for (sin, cos) in samples.map(f64::sin_cos) {
+            let down = (largest * sin).cos();
+            let square = 2.0 * GRAVITY * (down - c);
+            let passed = largest * cos / square.sqrt();
+            (time, lost) = (time + passed, lost + passed * square * (square + GRAVITY * down));
+        }
+        c + h / GRAVITY * lost / time * seconds / f64::from(intervals)
+    })
 }
 
 /// The arithmetic-geometric mean.
