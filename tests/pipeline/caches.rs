@@ -3,8 +3,8 @@
 use nucleus_cache::Detail;
 use nucleus_core::{ClothId, ColliderId};
 use nucleus_graph::compile::Program;
-use nucleus_tests::gallery::program_of;
-use nucleus_tests::record;
+use nucleus_tests::gallery::{program_of, program_of_text};
+use nucleus_tests::{Recording, record};
 
 /// A sheet of 2 601 points that falls on a rising ball, with four substeps. Threads share the points.
 fn drape() -> Program {
@@ -79,4 +79,63 @@ fn within_a_frame_a_collider_moves_along_straight_lines() {
     }
     let radius = |point: &[f32; 3]| point[0].hypot(point[2]);
     assert!(radius(&middle[0]) < 0.75 * radius(&start[0]), "an arc would keep the distance from the axis");
+}
+
+/// The height of the first point of an object at each recorded time, beside its frame.
+fn heights(recording: &Recording, name: &str) -> Vec<(i32, f32)> {
+    let mut cache = recording.play();
+    let object = cache.objects().iter().position(|object| object.name == name).expect(name);
+    let frames: Vec<i32> = cache.time_samples().iter().map(|sample| sample.frame).collect();
+    let height = |sample| cache.positions(object, sample).expect("it was recorded")[0][1];
+    frames.into_iter().zip((0..).map(height)).collect()
+}
+
+#[test]
+fn a_collider_is_recorded_where_its_keys_put_it_while_its_nucleus_is_not_solved() {
+    let others = [
+        "enable: keys([(1, true), (10, false), (20, true)])",
+        "enable: keys([(1, false), (20, true)])",
+        "enable: false",
+        "startFrame: 10",
+        "currentTime: keys([(1, 1), (10, 10), (15, 10), (25, 20)])",
+        "timeScale: 0.5",
+    ];
+    for other in others {
+        // All nuclei have the same moving mesh; the first is always solved.
+        let text = |every: f64, first: &str| {
+            format!(
+                r#"Scene(time: (start: 1, end: 24, fps: 24, every: {every}), nodes: {{
+                    "s": polyPlane(width: 1, height: 1, translateY: keys([(1, -2), (5, -1), (15, -3), (18, -1)])),
+                    {first}
+                    "n2": nucleus(subSteps: 2, {other}), "own": nRigid(inputMesh: "s", nucleus: "n2"),
+                    "p2": nParticle(position0: [(5, 5, 5)], nucleus: "n2"),
+                }})"#
+            )
+        };
+        let first = r#""n1": nucleus(subSteps: 3), "always": nRigid(inputMesh: "s", nucleus: "n1"),
+            "p1": nParticle(position0: [(5, 9, 5)], nucleus: "n1"),"#;
+        for (every, detail) in
+            [(1.0, Detail::Frames), (1.0, Detail::Every(4)), (0.5, Detail::Frames), (1.0, Detail::Substeps)]
+        {
+            let alone = program_of_text(&text(every, ""));
+            let both = program_of_text(&text(every, first));
+            let [alone, both] = [alone, both].map(|program| record(&program, 23, 1, detail));
+            let expected = heights(&both, "always");
+            let own = heights(&both, "own");
+            assert_eq!(own.len(), expected.len());
+            for ((frame, height), (_, keyed)) in own.iter().zip(&expected) {
+                assert!(
+                    (height - keyed).abs() < 1e-5,
+                    "{other}, {detail:?}: {height}, not {keyed}, at {frame}"
+                );
+            }
+            for frame in [2, 9, 10, 12, 15, 19, 20, 24] {
+                let ends = |all: &[(i32, f32)]| all.iter().rev().find(|one| one.0 == frame).map(|one| one.1);
+                if let (Some(height), Some(keyed)) = (ends(&heights(&alone, "own")), ends(&expected)) {
+                    let case = format!("{other}, {detail:?}, every {every}");
+                    assert!((height - keyed).abs() < 1e-5, "{case}: {height}, not {keyed}, at {frame}");
+                }
+            }
+        }
+    }
 }

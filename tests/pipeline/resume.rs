@@ -1,6 +1,6 @@
 //! A run that is saved at any frame and resumed has the same bits as a run that never stopped.
 
-use nucleus_core::{ContactState, Real, RestoreError, StepReport};
+use nucleus_core::{ColliderId, ContactState, Real, RestoreError, StepReport};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
 use nucleus_tests::gallery::program_of;
@@ -105,6 +105,35 @@ fn contacts_of_a_resumed_run_stay_while_the_nucleus_is_off() {
     let touches =
         |states: &Vec<Vec<ContactState>>| states[0].iter().any(|state| *state != ContactState::Free);
     assert!(run.contacts[7..13].iter().all(touches), "the sheet lies on the plane");
+}
+
+#[test]
+fn colliders_of_a_resumed_run_follow_their_keys_while_the_nucleus_is_off() {
+    let place = |simulation: &Simulation<f32>| {
+        let (mut points, mut moved) = (Vec::new(), Vec::new());
+        for id in [0, 1].map(ColliderId) {
+            simulation.state().collider_positions(id, 1.0, &mut points);
+            moved.push((points.clone(), simulation.state().collider_moved(id)));
+        }
+        moved
+    };
+    let program = program_of(
+        r#""n": nucleus(enable: keys([(1, true), (8, false), (14, true)])), "w": nucleus(startFrame: 12),
+        "p": nParticle(position0: [(5, 5, 5)], nucleus: "n"), "q": nParticle(position0: [(5, 5, 5)], nucleus: "w"),
+        "bm": polyPlane(translateY: keys([(1, 0), (20, 3)])),
+        "b": nRigid(inputMesh: "bm", nucleus: "n"), "d": nRigid(inputMesh: "bm", nucleus: "w")"#,
+    );
+    let mut simulation = Simulation::<f32>::new(&program, 1);
+    for frame in 1..20 {
+        let mut resumed =
+            Simulation::<f32>::restored(&program, 1, &simulation.save()).expect("the same program");
+        let places =
+            |places: Vec<(Vec<[f32; 3]>, bool)>| places.into_iter().map(|one| one.0).collect::<Vec<_>>();
+        assert_eq!(places(place(&resumed)), places(place(&simulation)), "frame {frame}");
+        simulation.advance(&mut ());
+        resumed.advance(&mut ());
+        assert_eq!(place(&resumed), place(&simulation), "after frame {frame}");
+    }
 }
 
 /// A sheet that falls on its edge and folds on the floor.

@@ -62,8 +62,12 @@ pub fn program(scene: &Scene) -> Program {
 
 /// The program of a scene with these nodes and 24 frames of 1/24 s.
 pub fn program_of(nodes: &str) -> Program {
-    let text = format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}})");
-    program(&scene(&text, Path::new("test.ron")))
+    program_of_text(&format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{{nodes}}})"))
+}
+
+/// The program of a scene in this text.
+pub fn program_of_text(text: &str) -> Program {
+    program(&scene(text, Path::new("test.ron")))
 }
 
 /// A scene of the gallery, such as `soft/can`, with parts of its text replaced.

@@ -15,10 +15,12 @@ use crate::compile::{Object, Program};
 use crate::scene::TimeSpan;
 
 use combined::{CombinedObserver, CombinedState, combined_report, with_evaluation};
+use idle_colliders::{NONE_IDLE, WithIdle};
 use nucleus_run::{NucleusRun, SolverCall};
 use substep_merge::{SubstepMerge, WithoutSubsteps};
 
 mod combined;
+mod idle_colliders;
 mod nucleus_run;
 mod substep_merge;
 
@@ -89,7 +91,8 @@ impl<R: Real> Simulation<R> {
         if self.runs.len() == 1 || !watch.observes_substeps() {
             return self.advance_merged(change, watch, None);
         }
-        let start = self.runs.iter().map(|run| &run.solver as &dyn StateView);
+        let start: Vec<WithIdle<'_>> = self.runs.iter().map(NucleusRun::view).collect();
+        let start = start.iter().map(|view| view as &dyn StateView);
         let intervals = self.evaluation_times(self.next_frame()).len() as u32;
         let merge = RefCell::new(SubstepMerge::new(&self.program, start, intervals));
         let report = self.advance_merged(change, &mut WithoutSubsteps(watch), Some(&merge));
@@ -104,8 +107,8 @@ impl<R: Real> Simulation<R> {
         for (index, between) in merge.moments() {
             // Snapshots have the velocities of the scene already.
             let seen = between.iter().zip(&self.runs).map(|(snapshot, run)| match snapshot {
-                Some(snapshot) => (snapshot as &dyn StateView, 1.0),
-                None => (&run.solver as &dyn StateView, run.rate),
+                Some(state) => (WithIdle { state, idle: &NONE_IDLE, ends_frame: true }, 1.0),
+                None => (run.view(), run.rate),
             });
             let (parts, rates) = seen.unzip();
             watch.substep(index, &CombinedState { program: &self.program, parts, rates, solving: None });
@@ -146,7 +149,13 @@ impl<R: Real> Simulation<R> {
     ) -> StepReport {
         let calls = self.schedule(frame);
         if let Some(merge) = merge {
-            merge.borrow_mut().schedule(&calls);
+            let mut merge = merge.borrow_mut();
+            merge.schedule(&calls);
+            for (nucleus, run) in self.runs.iter().enumerate() {
+                if !calls.iter().any(|call| call.nucleus == nucleus) {
+                    merge.capture_idle(nucleus, &run.view(), run.rate);
+                }
+            }
         }
         let total = calls.iter().map(|call| call.substeps).sum();
         let mut done = 0;
@@ -170,6 +179,7 @@ impl<R: Real> Simulation<R> {
     /// The solver calls up to a frame, in the order of time, then of nuclei.
     fn schedule(&mut self, frame: i64) -> Vec<SolverCall> {
         let mut calls: Vec<SolverCall> = Vec::new();
+        self.runs.iter_mut().for_each(|run| run.idle.begin_frame());
         for (interval, time) in (0..).zip(self.evaluation_times(frame)) {
             let first = calls.len();
             for (nucleus, run) in self.runs.iter_mut().enumerate() {
@@ -224,11 +234,10 @@ impl<R: Real> Simulation<R> {
         let span = span.map(|substep| f64::from(substep) / f64::from(observers.total.max(1)));
         observers.planes.borrow_mut().begin_span(call.nucleus, first_cloth, &input, span);
         let is_alone = before.is_empty() && after.is_empty() && observers.total == call.substeps;
-        if is_alone && run.rate == 1.0 {
+        if is_alone && run.rate == 1.0 && run.idle.is_empty() {
             return complete(run.solver.step(&input, observers.watch));
         }
-        let others = before.iter().map(|run| &run.solver as &dyn StateView);
-        let others: Vec<&dyn StateView> = others.chain(after.iter().map(|run| &run.solver as _)).collect();
+        let others = before.iter().chain(after.iter()).map(NucleusRun::view).collect();
         let rates =
             before.iter().map(|run| run.rate).chain([run.rate]).chain(after.iter().map(|run| run.rate));
         if let Some(merge) = observers.merge {
@@ -240,6 +249,7 @@ impl<R: Real> Simulation<R> {
             own: call.substeps,
             total: observers.total,
             nucleus: call.nucleus,
+            idle: &run.idle,
             others,
             rates: rates.collect(),
             merge: observers.merge,
@@ -279,7 +289,7 @@ impl<R: Real> Simulation<R> {
     /// The current state of all objects. Velocities are per second of the scene.
     pub fn state(&self) -> &dyn StateView {
         match self.runs.as_slice() {
-            [only] if only.rate == 1.0 => &only.solver,
+            [only] if only.rate == 1.0 && only.idle.is_empty() => &only.solver,
             _ => self,
         }
     }
@@ -318,7 +328,8 @@ impl<R: Real> Simulation<R> {
         if count != program.nuclei().len() as u64 {
             return Err(RestoreError::OtherModel);
         }
-        let runs = (0..program.nuclei().len()).map(|k| NucleusRun::restored(program, k, threads, &mut from));
+        let runs =
+            (0..program.nuclei().len()).map(|k| NucleusRun::restored(program, k, frame, threads, &mut from));
         let runs: Vec<NucleusRun<R>> = runs.collect::<Result<_, _>>()?;
         let is_whole = from.is_at_end();
         is_whole
@@ -327,7 +338,7 @@ impl<R: Real> Simulation<R> {
     }
 
     fn combined(&self) -> CombinedState<'_> {
-        let parts = self.runs.iter().map(|run| &run.solver as &dyn StateView).collect();
+        let parts = self.runs.iter().map(NucleusRun::view).collect();
         let rates = self.runs.iter().map(|run| run.rate).collect();
         CombinedState { program: &self.program, parts, rates, solving: None }
     }

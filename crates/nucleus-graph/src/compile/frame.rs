@@ -29,6 +29,19 @@ impl Program {
         self.first_input_of(0)
     }
 
+    /// The points of the colliders of a nucleus where the animation has them at a frame, in metres; `None` where one never
+    /// moves.
+    pub(crate) fn collider_places(&self, nucleus: usize, frame: f64) -> Vec<Option<Vec<Vector3<f64>>>> {
+        let nucleus = &self.nuclei()[nucleus];
+        let moment = self.graph().at(frame);
+        let place = |collider: &ColliderSource| {
+            let (placement, points) =
+                (moment.placement(collider.mesh), collider.motion.as_ref()?.at(&moment));
+            Some(points.iter().map(|point| nucleus.units.point(placement.point(*point))).collect())
+        };
+        nucleus.colliders.iter().map(place).collect()
+    }
+
     /// The input of the first frame of each nucleus, in the order of the program.
     pub fn first_inputs(&self) -> impl Iterator<Item = FrameInput> {
         (0..self.nuclei().len()).map(|nucleus| self.first_input_of(nucleus))

@@ -11,13 +11,14 @@ use nucleus_core::{
 
 use crate::compile::{NucleusProgram, Program};
 
+use super::idle_colliders::{IdleColliders, WithIdle};
 use super::substep_merge::SubstepMerge;
 
 /// The states of all nuclei, by the ids of the program. Velocities are per second of the scene.
 pub(super) struct CombinedState<'a> {
     pub(super) program: &'a Program,
     /// One per nucleus.
-    pub(super) parts: Vec<&'a dyn StateView>,
+    pub(super) parts: Vec<WithIdle<'a>>,
     /// Solver seconds per second of the scene, one per nucleus.
     pub(super) rates: Vec<f64>,
     /// The nucleus that is being solved, and the share of its evaluation interval that has passed. All others are at the
@@ -28,12 +29,12 @@ pub(super) struct CombinedState<'a> {
 impl CombinedState<'_> {
     fn cloth(&self, cloth: ClothId) -> (&dyn StateView, ClothId, &NucleusProgram) {
         let (k, own) = self.program.locate_cloth(cloth);
-        (self.parts[k], own, &self.program.nuclei()[k])
+        (&self.parts[k], own, &self.program.nuclei()[k])
     }
 
     fn collider(&self, collider: ColliderId) -> (&dyn StateView, ColliderId, &NucleusProgram) {
         let (k, own) = self.program.locate_collider(collider);
-        (self.parts[k], own, &self.program.nuclei()[k])
+        (&self.parts[k], own, &self.program.nuclei()[k])
     }
 
     /// Converts scene units per metre from the first nucleus to another.
@@ -121,8 +122,10 @@ pub(super) struct CombinedObserver<'a> {
     pub(super) total: u32,
     /// Index of this nucleus.
     pub(super) nucleus: usize,
+    /// Its colliders in the evaluations of the frame that are not solved.
+    pub(super) idle: &'a IdleColliders,
     /// The states of the other nuclei, in order.
-    pub(super) others: Vec<&'a dyn StateView>,
+    pub(super) others: Vec<WithIdle<'a>>,
     /// Solver seconds per second of the scene, of all nuclei.
     pub(super) rates: Vec<f64>,
     /// The substeps of the frame, where they are merged by time.
@@ -131,32 +134,32 @@ pub(super) struct CombinedObserver<'a> {
 }
 
 impl<'a> CombinedObserver<'a> {
-    /// The states of all nuclei; `state` is that of this one.
-    fn parts<'b>(&self, state: &'b dyn StateView) -> Vec<&'b dyn StateView>
+    /// The states of all nuclei; `own` is that of this one.
+    fn parts<'b>(&self, own: WithIdle<'b>) -> Vec<WithIdle<'b>>
     where
         'a: 'b,
     {
-        let mut parts: Vec<&'b dyn StateView> =
-            self.others.iter().map(|other| *other as &'b dyn StateView).collect();
-        parts.insert(self.nucleus, state);
+        let mut parts: Vec<WithIdle<'b>> = self.others.clone();
+        parts.insert(self.nucleus, own);
         parts
     }
 }
 
 impl StepObserver for CombinedObserver<'_> {
     fn substep(&mut self, moment: SubstepIndex, state: &dyn StateView) {
+        let in_frame = SubstepIndex { substep: self.done + moment.substep, substeps: self.total };
+        let own = WithIdle { state, idle: self.idle, ends_frame: in_frame.ends_frame() };
         if let Some(merge) = self.merge {
-            merge.borrow_mut().capture(self.nucleus, moment, state, self.rates[self.nucleus]);
+            merge.borrow_mut().capture(self.nucleus, moment, &own, self.rates[self.nucleus]);
         }
-        let parts = self.parts(state);
+        let parts = self.parts(own);
         let solving = Some((self.nucleus, f64::from(moment.substep) / f64::from(moment.substeps)));
-        let moment = SubstepIndex { substep: self.done + moment.substep, substeps: self.total };
         let rates = self.rates.clone();
-        self.watch.substep(moment, &CombinedState { program: self.program, parts, rates, solving });
+        self.watch.substep(in_frame, &CombinedState { program: self.program, parts, rates, solving });
     }
 
     fn step(&mut self, share: f64, state: &dyn StateView) {
-        let parts = self.parts(state);
+        let parts = self.parts(WithIdle { state, idle: self.idle, ends_frame: false });
         let solving = Some((self.nucleus, share));
         let share = (f64::from(self.done) + share * f64::from(self.own)) / f64::from(self.total);
         let rates = self.rates.clone();

@@ -6,6 +6,8 @@ use nucleus_core::{Encode, PointId, Reader, Real, RestoreError, Solver, StateVie
 use crate::attributes::nucleus;
 use crate::compile::{AttachmentState, EmitterState, NucleusProgram, Program};
 
+use super::idle_colliders::{IdleColliders, WithIdle};
+
 /// One nucleus during a run.
 pub(super) struct NucleusRun<R: Real> {
     pub(super) solver: Solver<R>,
@@ -18,6 +20,7 @@ pub(super) struct NucleusRun<R: Real> {
     pub(super) was_skipped: bool,
     /// Solver seconds per second of the scene in the last evaluation: 0 if it was not solved.
     pub(super) rate: f64,
+    pub(super) idle: IdleColliders,
 }
 
 /// One call of the solver: an evaluation interval of one nucleus.
@@ -47,6 +50,7 @@ impl<R: Real> NucleusRun<R> {
         let nucleus = &program.nuclei()[nucleus];
         let start = nucleus.start() as f64;
         let now = program.graph().at(start).get(nucleus.node(), &nucleus::CURRENT_TIME);
+        let first = program.time().start as f64;
         Self {
             solver: Solver::new(nucleus.model().clone(), threads),
             attachments: AttachmentState::default(),
@@ -54,7 +58,13 @@ impl<R: Real> NucleusRun<R> {
             evaluated: start,
             was_skipped: false,
             rate: program.time_rate(index, [start, start + 1.0]),
+            idle: idle_at(program, index, first < start, first),
         }
+    }
+
+    /// Its state, with colliders that are not solved where the animation has them at the end of the frame.
+    pub(super) fn view(&self) -> WithIdle<'_> {
+        WithIdle { state: &self.solver, idle: &self.idle, ends_frame: true }
     }
 
     /// Returns to the initial state of nucleus number `index`. Its time goes on.
@@ -76,12 +86,14 @@ impl<R: Real> NucleusRun<R> {
         let advances = elapsed > 0.0 && elapsed <= max_jump * (1.0 + 1e-9) && now > start;
         if !advances || !moment.get(id, &nucleus::ENABLE) {
             self.was_skipped = true;
+            self.idle.follow(program, index, [from, frame]);
             if now > start {
                 self.rate = 0.0;
                 self.hold(program, index, [from, frame], elapsed);
             }
             return None;
         }
+        self.idle.resume();
         let resets = self.was_skipped && now - elapsed <= start;
         Some(SolverCall {
             nucleus: index,
@@ -105,7 +117,7 @@ impl<R: Real> NucleusRun<R> {
 
     /// Appends the state to a checkpoint.
     pub(super) fn save(&self, out: &mut Vec<u8>) {
-        let Self { solver, attachments, now, evaluated, was_skipped, rate } = self;
+        let Self { solver, attachments, now, evaluated, was_skipped, rate, idle: _ } = self;
         let AttachmentState { held, formed, emitters, .. } = attachments;
         solver.save().encode(out);
         held.encode(out);
@@ -114,14 +126,15 @@ impl<R: Real> NucleusRun<R> {
         (*now, (*evaluated, (*was_skipped, *rate))).encode(out);
     }
 
-    /// Reads the state from a checkpoint.
+    /// Reads the state from a checkpoint that was saved at a frame of the scene.
     pub(super) fn restored(
         program: &Program,
-        nucleus: usize,
+        index: usize,
+        frame: i64,
         threads: usize,
         from: &mut Reader<'_>,
     ) -> Result<Self, RestoreError> {
-        let nucleus = &program.nuclei()[nucleus];
+        let nucleus = &program.nuclei()[index];
         let solver = Vec::decode(from).ok_or(RestoreError::Damaged)?;
         let held: Vec<Option<Vec<Vector3<f64>>>> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
         let formed: Vec<bool> = Encode::decode(from).ok_or(RestoreError::Damaged)?;
@@ -134,6 +147,12 @@ impl<R: Real> NucleusRun<R> {
         }
         let solver = Solver::restored(nucleus.model().clone(), threads, &solver)?;
         let attachments = AttachmentState { held, formed, emitters, ..AttachmentState::default() };
-        Ok(Self { solver, attachments, now, evaluated, was_skipped, rate })
+        let idle = idle_at(program, index, was_skipped || frame < nucleus.start(), frame as f64);
+        Ok(Self { solver, attachments, now, evaluated, was_skipped, rate, idle })
     }
+}
+
+/// The idle colliders of a nucleus at a frame, if it waits there.
+fn idle_at(program: &Program, index: usize, waits: bool, frame: f64) -> IdleColliders {
+    if waits { IdleColliders::waiting(program, index, frame) } else { IdleColliders::default() }
 }

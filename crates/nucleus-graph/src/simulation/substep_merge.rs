@@ -73,6 +73,13 @@ impl SubstepMerge {
         track.substeps.push((time, Snapshot::of(state, track.start.units, rate)));
     }
 
+    /// Keeps the state of a nucleus that the whole frame does not solve: its colliders move on to the end of the frame.
+    pub(super) fn capture_idle(&mut self, nucleus: usize, state: &dyn StateView, rate: f64) {
+        let end = self.intervals * self.parts;
+        let track = &mut self.nuclei[nucleus];
+        track.substeps.push((end, Snapshot::of(state, track.start.units, rate)));
+    }
+
     /// The times of all substeps in order, each with the states of the nuclei; `None` where one is at the end of the frame.
     pub(super) fn moments(&self) -> impl Iterator<Item = (SubstepIndex, Vec<Option<Snapshot>>)> + '_ {
         let substeps = self.intervals * self.parts;
