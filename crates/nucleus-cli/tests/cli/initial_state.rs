@@ -55,6 +55,22 @@ fn a_run_from_a_frame_of_a_cache_continues_its_motion() {
 }
 
 #[test]
+fn a_run_from_a_frame_of_a_cache_continues_its_motion_under_a_time_warp() {
+    let folder = folder();
+    let text = r#"Scene(time: (start: 1, end: 25, fps: 24), nodes: {
+        "n": nucleus(currentTime: keys([(1, 1), (25, 13)])),
+        "m": polyPlane(width: 1, height: 1, subdivisions: (2, 2)), "c": nCloth(inputMesh: "m", drag: 0, lift: 0),
+    })"#;
+    fs::write(folder.path().join("drape.ron"), text).unwrap();
+    assert_eq!(run(folder.path(), &["--velocities", "-o", "whole.mcap"]).status.code(), Some(0));
+    let arguments = ["--from", "whole.mcap@13", "--frames", "13..25", "-o", "rest.mcap"];
+    assert_eq!(run(folder.path(), &arguments).status.code(), Some(0));
+    let [rest, whole] = ["rest.mcap", "whole.mcap"].map(|cache| state(folder.path(), cache, 25).0);
+    let apart = farthest(&rest, &whole);
+    assert!(apart < 1e-4, "{apart} after a fall to {}", whole[0][1]);
+}
+
+#[test]
 fn velocities_that_were_not_recorded_are_estimated_with_a_warning() {
     let folder = folder();
     scene(folder.path(), 5, "");

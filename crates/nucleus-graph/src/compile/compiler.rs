@@ -71,6 +71,7 @@ impl<'a> Compiler<'a> {
             emitters: Vec::new(),
             fields: Vec::new(),
             start: first,
+            start_time: units::start_time(scene, nucleus, first),
             first_cloth: previous.map_or(0, |previous| previous.cloths().end),
             first_collider: previous.map_or(0, |previous| previous.colliders().end),
         };

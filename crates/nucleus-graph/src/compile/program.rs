@@ -56,6 +56,8 @@ pub struct NucleusProgram {
     pub(super) fields: Vec<FieldSource>,
     /// Start frame.
     pub(super) start: i64,
+    /// The time after which it is solved, in frames of its `currentTime`.
+    pub(super) start_time: f64,
     /// Count of cloths in the nuclei before this one.
     pub(super) first_cloth: u32,
     /// Count of colliders in the nuclei before this one.
@@ -361,6 +363,11 @@ impl NucleusProgram {
     /// Its start frame.
     pub fn start(&self) -> i64 {
         self.start
+    }
+
+    /// The time after which it is solved, in frames of its `currentTime`.
+    pub(crate) fn start_time(&self) -> f64 {
+        self.start_time
     }
 
     /// Its nucleus node.

@@ -56,6 +56,20 @@ impl Units {
     }
 }
 
+/// The time of a nucleus after which it is solved, in frames of its `currentTime`: its `startFrame`, but not before its time
+/// at the first frame of the scene. Without `startFrame` it is solved from that frame on.
+pub(super) fn start_time(scene: &Scene, nucleus: NodeId, start_frame: i64) -> f64 {
+    let first = scene.time.start;
+    let now = scene.graph.at(first as f64).get(nucleus, &nucleus::CURRENT_TIME);
+    if start_frame > first {
+        start_frame as f64
+    } else if scene.graph.is_given(nucleus, &nucleus::START_FRAME) {
+        now.max(scene.graph.at(first as f64).get(nucleus, &nucleus::START_FRAME))
+    } else {
+        now
+    }
+}
+
 /// The start frame of a nucleus: its `startFrame`, but not before the first frame of the scene.
 pub(super) fn start_frame(scene: &Scene, nucleus: NodeId, findings: &mut Findings) -> i64 {
     let TimeSpan { start, end, .. } = scene.time;

@@ -78,7 +78,7 @@ impl<R: Real> NucleusRun<R> {
     pub(super) fn evaluate(&mut self, program: &Program, index: usize, frame: f64) -> Option<SolverCall> {
         let moment = program.graph().at(frame);
         let nucleus: &NucleusProgram = &program.nuclei()[index];
-        let (id, start) = (nucleus.node(), nucleus.start() as f64);
+        let (id, start) = (nucleus.node(), nucleus.start_time());
         let now = moment.get(id, &nucleus::CURRENT_TIME);
         let (elapsed, from) = (now - self.now, self.evaluated);
         (self.now, self.evaluated) = (now, frame);

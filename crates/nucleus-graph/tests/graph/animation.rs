@@ -124,6 +124,26 @@ fn a_time_of_its_own_drives_a_nucleus() {
     assert!(frozen.warnings().iter().any(|warning| warning.message.contains("nothing is solved")));
 }
 
+#[test]
+fn a_run_that_begins_within_a_time_warp_moves_as_the_time_says() {
+    let warp = "currentTime: keys([(1, 1), (25, 13)])";
+    let whole = heights(&falling("start: 1, end: 25, fps: 24", warp));
+    for start in ["", "startFrame: 1, "] {
+        let part = falling("start: 13, end: 25, fps: 24", &format!("{start}{warp}"));
+        let part = heights(&part);
+        let apart = part.iter().zip(&whole).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(
+            part.len() == 12 && apart < 1e-12,
+            "{start}: from its initial state it falls as the whole run does"
+        );
+        assert!(part[0] < 0.0);
+    }
+    // Its time is 10 at frame 19.
+    let later = heights(&falling("start: 13, end: 25, fps: 24", &format!("startFrame: 10, {warp}")));
+    assert_eq!(later[5], 0.0, "{later:?}");
+    assert!(later[6] < 0.0, "{later:?}");
+}
+
 /// The frames of a run and the height of its particle `q` after each.
 fn falls(time: &str, nodes: &str) -> Vec<(i64, f64)> {
     let falling = "nParticle(position0: [(0, 9, 0)], drag: 0, nucleus: \"n\")";
