@@ -1,6 +1,8 @@
 //! Sources of a frame's input: the nodes that each object and constraint is evaluated from, and constants fixed at
 //! compile time.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use nucleus_core::{ClothId, PointId};
 
@@ -8,6 +10,7 @@ use crate::graph::NodeId;
 
 use super::animated_mesh::{AnimatedMesh, Points};
 use super::constraints::split_mesh::Tearing;
+use super::emission::RateMap;
 
 /// Source of the frames of a cloth or of particles.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,8 +94,8 @@ pub(super) struct EmittingMesh {
     pub(super) mesh: NodeId,
     pub(super) shape: AnimatedMesh,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Factors on the rate by point; empty where they are 1.
-    pub(super) rate: Vec<f64>,
+    /// The share of the rate at each place; `None` where it is all of it.
+    pub(super) rate: Option<Arc<RateMap>>,
 }
 
 /// The state of an emitter from frame to frame.

@@ -9,6 +9,7 @@
 //! | the times of birth, and the room for particles   | [`Emitter`]   |
 //! | where and how fast, by type of emitter           | `shapes.rs`   |
 //! | emission from the surface of a mesh              | `surface.rs`  |
+//! | the texture of its rate                          | `rate_map.rs` |
 //! | emission from a curve                            | `curve.rs`    |
 //! | the start of a particle                          | `start.rs`    |
 //! | lifespans                                        | `lifespan.rs` |
@@ -17,6 +18,7 @@
 mod curve;
 mod lifespan;
 mod random;
+mod rate_map;
 mod shapes;
 mod start;
 mod surface;
@@ -39,6 +41,7 @@ use super::sources::{Emitter, EmitterState, EmittingMesh};
 use curve::CurveShape;
 pub(super) use lifespan::{Lifespan, dies};
 use random::Random;
+pub(super) use rate_map::RateMap;
 use shapes::{Launch, PointShape, VolumeShape};
 
 /// `emitterType`.

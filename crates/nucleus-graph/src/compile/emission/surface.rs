@@ -1,17 +1,19 @@
 //! Emission from the surface of a mesh, which the emitter has as its parent.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use crate::animation::sin_cos_degrees;
-use crate::attributes::{Painting, Value, n_base, n_cloth, point_emitter, surface_shape};
+use crate::attributes::{n_base, n_cloth, point_emitter, surface_shape};
 use crate::compile::compiler::Compiler;
 use crate::compile::geometry::placed_faces;
 use crate::compile::sources::EmittingMesh;
 use crate::graph::{EvalContext, NodeId};
 use crate::mesh::doubled_area;
-use crate::paint::Texture;
 
 use super::random::Random;
+use super::rate_map::RateMap;
 use super::start::{Speed, Start, turned_to};
 
 type Vec3 = Vector3<f64>;
@@ -42,9 +44,10 @@ impl Compiler<'_> {
             warning.help("nothing emits from simulated cloth yet: emit from a mesh that moves with it");
         }
         let shape = self.geometry.animated(self.scene, mesh, self.findings)?;
-        let surface = self.geometry.surface(self.scene, mesh, self.findings)?;
-        let triangles = placed_faces(&surface.faces, &self.start.placement(mesh)).triangles().collect();
-        let emitting = EmittingMesh { mesh, shape, triangles, rate: self.rate_map(emitter, mesh)? };
+        let faces = self.geometry.surface(self.scene, mesh, self.findings)?.faces.clone();
+        let triangles = placed_faces(&faces, &self.start.placement(mesh)).triangles().collect();
+        let rate = self.rate_map(emitter, mesh, &faces)?.map(Arc::new);
+        let emitting = EmittingMesh { mesh, shape, triangles, rate };
         let area = emitting.area(&self.start);
         if area.is_nan() || area <= 0.0 {
             let name = graph.node(mesh).name();
@@ -53,40 +56,6 @@ impl Compiler<'_> {
             return None;
         }
         Some(emitting)
-    }
-}
-
-impl Compiler<'_> {
-    /// The factor on the rate at each point of a mesh, from a texture; empty without one. `None` after an error, which is
-    /// reported.
-    fn rate_map(&mut self, emitter: NodeId, mesh: NodeId) -> Option<Vec<f64>> {
-        let enabled = self.start.get(emitter, &point_emitter::ENABLE_TEXTURE_RATE);
-        let held = self.start.held(emitter, &point_emitter::RATE_MAP);
-        let (true, Some(Value::Painting(Painting::Texture(file)))) = (enabled, held) else {
-            return Some(Vec::new());
-        };
-        let dark = self.start.get(emitter, &point_emitter::EMIT_FROM_DARK);
-        let texture = Texture::read(&self.scene.source.path(&file)).map_err(|error| error.to_string());
-        let uvs = self.geometry.uvs(self.scene, mesh).map_err(|error| error.to_string());
-        let [name, mesh] = [emitter, mesh].map(|node| self.scene.graph.node(node).name());
-        let sampled = texture.and_then(|texture| {
-            let uvs: Option<Vec<[f64; 2]>> = uvs?.unwrap_or_default().into_iter().collect();
-            let at = |uv| if dark { 1.0 - texture.at(uv) } else { texture.at(uv) };
-            match uvs.filter(|uvs| !uvs.is_empty()) {
-                Some(uvs) => Ok(uvs.into_iter().map(at).collect::<Vec<f64>>()),
-                None => {
-                    Err(format!("`rateMap` of `{name}` asks for texture coordinates, and `{mesh}` has none"))
-                }
-            }
-        });
-        match sampled {
-            Ok(rates) => Some(rates),
-            Err(message) => {
-                let place = self.scene.source.place(&format!("{name}.rateMap"));
-                self.findings.error(&place, message);
-                None
-            }
-        }
     }
 }
 
@@ -131,8 +100,8 @@ pub(super) struct Patches {
     /// World positions at both ends, in scene units.
     ends: [Vec<Vec3>; 2],
     triangles: Vec<[u32; 3]>,
-    /// Factors on the rate by point; empty where they are 1.
-    rate: Vec<f64>,
+    /// The share of the rate at each place; `None` where it is all of it.
+    rate: Option<Arc<RateMap>>,
     /// Twice the area up to each triangle.
     sums: Vec<f64>,
     normal: f64,
@@ -142,7 +111,8 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    /// The start of a particle, evenly spread over the area; `None` where there is none.
+    /// The start of a particle, evenly spread over the area; `None` where there is none, and where
+    /// the rate map leaves it out.
     pub(super) fn draw(&self, time: f64, seconds: f64, random: &mut Random) -> Option<Start> {
         let all = *self.sums.last().filter(|sum| **sum > 0.0)?;
         let drawn = random.next() * all;
@@ -152,11 +122,9 @@ impl Patches {
         let (u, v) = (random.next(), random.next());
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let weights = [1.0 - u - v, u, v];
-        let rate = |(&corner, weight): (&u32, f64)| {
-            self.rate.get(corner as usize).map_or(weight, |rate| rate * weight)
-        };
-        let rate: f64 = corners.iter().zip(weights).map(rate).sum();
-        if !self.rate.is_empty() && random.next() >= rate {
+        if let Some(rate) = &self.rate
+            && random.next() >= rate.at(triangle, weights)
+        {
             return None;
         }
         let at = |points: &[Vec3]| -> Vec3 {
