@@ -207,7 +207,7 @@ node_table! {
         /// Factor on wrinkle, per point.
         WRINKLE_PER_VERTEX: Vec<f64> = floats("wrinklePerVertex", "wpv").solved("nucleus_graph::compile::input_mesh");
         /// Height of the wrinkles of the wrinkle map.
-        WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0).solved("nucleus_graph::compile::input_mesh");
+        WRINKLE_MAP_SCALE: f64 = float("wrinkleMapScale", "wms", 1.0).soft(-2.0, 2.0).solved("nucleus_graph::compile::input_mesh").fixed();
         /// Source of the map of stretch: none, a value per point, or a texture. Default: what is given.
         STRETCH_MAP_TYPE: Choice = choice("stretchMapType", "smt", 2, MAP_TYPES).solved("nucleus_core::model::vertex_maps").fixed();
         /// Source of the map of compression: none, a value per point, or a texture. Default: what is given.

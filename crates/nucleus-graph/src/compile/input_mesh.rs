@@ -134,6 +134,7 @@ impl Compiler<'_> {
                 error.help("a rest shape has the points and faces of the input mesh, elsewhere");
                 return None;
             }
+            self.warn_of_moving_rest_shape(cloth, source);
             let positions = shape.iter().map(|point| placement.point(*point)).collect();
             rest = Some(Surface { positions, faces: input.faces.clone() });
         }
@@ -153,6 +154,31 @@ impl Compiler<'_> {
             rest = Some(surface);
         }
         Some(rest)
+    }
+}
+
+impl Compiler<'_> {
+    /// Warns of a rest shape that changes size or form: it is read at the start. Translation and rotation change no length.
+    fn warn_of_moving_rest_shape(&mut self, cloth: NodeId, source: NodeId) {
+        let is_fixed = self.geometry.is_fixed(self.scene, source, self.findings);
+        let graph = &self.scene.graph;
+        let time = self.scene.time;
+        let size = |frame: i64| {
+            let linear = graph.at(frame as f64).placement(source).linear;
+            linear.transpose() * linear
+        };
+        let first = size(self.program.start);
+        let scales = |frame: i64| (size(frame) - first).norm() > 1e-9 * first.norm();
+        if is_fixed && !(self.program.start..=time.end).any(scales) {
+            return;
+        }
+        let [name, source] = [cloth, source].map(|id| graph.node(id).name());
+        let place = self.scene.source.place(&format!("{name}.restShapeMesh"));
+        let message = format!(
+            "`{name}` rests in the shape of `{source}` at the start, and does not follow its changes"
+        );
+        let help = "key `restLengthScale` to change the size at rest";
+        self.findings.warning(&place, message).help(help);
     }
 }
 

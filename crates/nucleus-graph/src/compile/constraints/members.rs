@@ -48,6 +48,7 @@ impl Compiler<'_> {
             }
             if self.check_members(node, &members) {
                 self.warn_of_unused_attributes(node, &members);
+                self.warn_of_keyed_pairing(node);
                 self.warn_of_disabled_objects(node, &members);
                 sources.extend(self.sources_of(node, members));
             }

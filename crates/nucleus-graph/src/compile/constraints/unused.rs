@@ -194,6 +194,36 @@ impl Compiler<'_> {
         }
     }
 
+    /// Warns of keys that say how elements are paired, where pairs are made once.
+    pub(super) fn warn_of_keyed_pairing(&mut self, constraint: NodeId) {
+        let graph = &self.scene.graph;
+        let node = graph.node(constraint);
+        let values = Values::new(&self.start, constraint);
+        let to_space = values.choice(&con::CONSTRAINT_RELATION) == kinds::TO_SPACE;
+        if to_space || values.updates_per_frame() || graph.changes(constraint, &con::CONNECTION_UPDATE) {
+            return;
+        }
+        let has_reach = values.kind == kinds::WELD_BORDERS
+            || values.choice(&con::CONNECTION_METHOD) == kinds::WITHIN_MAX_DISTANCE;
+        let keyed = [
+            (con::CONNECTION_METHOD.row.name, graph.changes(constraint, &con::CONNECTION_METHOD)),
+            (con::COMPONENT_RELATION.row.name, graph.changes(constraint, &con::COMPONENT_RELATION)),
+            (
+                con::CONNECT_WITHIN_COMPONENT.row.name,
+                graph.changes(constraint, &con::CONNECT_WITHIN_COMPONENT),
+            ),
+            (con::CONNECTION_DENSITY.row.name, graph.changes(constraint, &con::CONNECTION_DENSITY)),
+            (con::MAX_DISTANCE.row.name, has_reach && graph.changes(constraint, &con::MAX_DISTANCE)),
+        ];
+        for (row, _) in keyed.into_iter().filter(|(_, changes)| *changes) {
+            let place = self.scene.source.place(&format!("{}.{row}", node.name()));
+            let message =
+                format!("`{row}` of `{}` changes, and is read once: when its links form", node.name());
+            let help = "write `connectionUpdate: perFrame`, or give it one value";
+            self.findings.warning(&place, message).help(help);
+        }
+    }
+
     /// Warns of whole objects in a constraint that disables collisions: for a pair another kind is meant. Keys of `enable`
     /// switch collisions on purpose.
     pub(super) fn warn_of_disabled_objects(&mut self, constraint: NodeId, members: &[Member]) {

@@ -233,6 +233,44 @@ fn attributes_that_are_read_once_cannot_be_keyed() {
         at_start(&format!(r#""c": nComponent({name}: keys([(1, 1), (12, 0)]))"#));
     }
     at_start(&sheet("", "pressureMethod: volumeTrackingModel, startPressure: keys([(1, 0), (12, 1)])"));
+    at_start(&sheet("", "wrinklePerVertex: [1, 0, 0, 0], wrinkleMapScale: keys([(1, 0), (12, 1)])"));
+}
+
+#[test]
+fn keys_of_the_pairing_of_a_constraint_that_pairs_once_are_a_warning() {
+    for (name, keys) in [
+        ("connectionMethod", "keys([(1, componentOrder), (12, nearestPairs)])"),
+        ("componentRelation", "keys([(1, allToFirst), (12, chain)])"),
+        ("connectWithinComponent", "keys([(1, false), (12, true)])"),
+        ("connectionDensity", "keys([(1, 0.5), (12, 1)])"),
+    ] {
+        let of = |more: &str| {
+            of_constraint(&format!(
+                r#"type: pointToPoint, components: ["cloth1", "cloth2"], {name}: {keys}{more}"#
+            ))
+        };
+        assert_eq!(of(""), [format!("`{name}` of `k` changes, and is read once: when its links form")]);
+        assert_eq!(of(", connectionUpdate: perFrame"), Vec::<String>::new(), "{name}");
+    }
+}
+
+#[test]
+fn a_rest_shape_that_changes_is_a_warning() {
+    let of = |attributes: &str| {
+        let rest = format!(r#""rest": polyPlane(width: 2, height: 2, subdivisions: (1, 1), {attributes}),"#);
+        warnings(&(sheet("", r#"restShapeMesh: "rest""#) + &rest))
+    };
+    let expected = "`cloth1` rests in the shape of `rest` at the start, and does not follow its changes";
+    assert_eq!(of("scale: keys([(1, (1, 1, 1)), (20, (0.8, 0.8, 0.8))])"), [expected]);
+    assert_eq!(
+        of("translateY: keys([(1, 0), (20, 3)]), rotateY: keys([(1, 0), (20, 90)])"),
+        Vec::<String>::new()
+    );
+    assert_eq!(of("scale: (2, 2, 2)"), Vec::<String>::new());
+    let blends = r#"blendTarget: "high", blend: keys([(1, 0), (11, 1)])"#;
+    let high = r#""high": polyPlane(width: 3, height: 2, subdivisions: (1, 1)),"#;
+    let rest = format!(r#""rest": polyPlane(width: 2, height: 2, subdivisions: (1, 1), {blends}),"#);
+    assert_eq!(warnings(&(sheet("", r#"restShapeMesh: "rest""#) + &rest + high)), [expected]);
 }
 
 #[test]
