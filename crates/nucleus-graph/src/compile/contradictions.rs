@@ -21,14 +21,16 @@ impl Compiler<'_> {
         let dependencies = DEPENDENCIES
             .iter()
             .flat_map(|Dependency { rows, need, help }| rows.iter().map(move |&row| (row, need, *help)));
+        let mut told = Vec::new();
         for (row, need, help) in dependencies {
             let is_own = node.node_type().attribute(row.name).is_some_and(|own| own == row);
-            // A switch that is off by default needs nothing to be off.
+            // A switch, a choice or a number that is off by default needs nothing to be off.
             let is_off = |setting: &Setting| {
-                let off = Value::Bool(false);
-                row.default.as_ref() == Some(&off) && *setting == Setting::Fixed(off)
+                let off = [Value::Bool(false), Value::Choice(Choice(0)), Value::Float(0.0)];
+                off.into_iter()
+                    .any(|off| row.default.as_ref() == Some(&off) && *setting == Setting::Fixed(off))
             };
-            if !is_own || node.settings().get(row.name).is_none_or(is_off) {
+            if !is_own || told.contains(&row.name) || node.settings().get(row.name).is_none_or(is_off) {
                 continue;
             }
             let because = match need {
@@ -40,6 +42,18 @@ impl Compiler<'_> {
                 {
                     let word = key.row.words().into_iter().find(|(value, _)| *value == node.get(key));
                     format!("`{}` is {}", key.row.name, word.map_or_else(String::new, |(_, word)| word))
+                }
+                Need::OneOf(key, wanted)
+                    if !graph.changes(object, key) && !wanted.contains(&node.get(key)) =>
+                {
+                    let word = key.row.words().into_iter().find(|(value, _)| *value == node.get(key));
+                    format!("`{}` is {}", key.row.name, word.map_or_else(String::new, |(_, word)| word))
+                }
+                Need::Positive(keys) if !keys.iter().any(|key| is_ever_positive(graph, object, key)) => {
+                    format!("`{}` is 0", keys[0].row.name)
+                }
+                Need::AnyOn(keys) if !keys.iter().any(|key| is_ever_on(graph, object, key)) => {
+                    format!("`{}` is false", keys[0].row.name)
                 }
                 Need::On(key) if !graph.is_ever_nonzero(object, key) => {
                     format!("`{}` is false", key.row.name)
@@ -56,6 +70,7 @@ impl Compiler<'_> {
             let place = self.scene.source.place(&format!("{}.{}", node.name(), row.name));
             let message = format!("`{}` of `{}` has no effect: {because}", row.name, node.name());
             self.findings.warning(&place, message).help(help);
+            told.push(row.name);
         }
         self.warn_of_bounce(object, &n_base::BOUNCE);
     }
@@ -135,6 +150,16 @@ impl Compiler<'_> {
 /// Whether an emitter or an event may add particles to an object.
 fn is_born(graph: &Graph, object: NodeId) -> bool {
     !graph.elements(object, &particle::NEW_PARTICLES).is_empty() || is_event_target(graph, object)
+}
+
+/// Whether a number is ever above zero.
+fn is_ever_positive(graph: &Graph, object: NodeId, key: &Key<f64>) -> bool {
+    graph.changes(object, key) && graph.is_ever_nonzero(object, key) || graph.node(object).get(key) > 0.0
+}
+
+/// Whether a switch that an object may lack is ever on.
+fn is_ever_on(graph: &Graph, object: NodeId, key: &Key<bool>) -> bool {
+    graph.node(object).node_type().attribute(key.row.name).is_some() && graph.is_ever_nonzero(object, key)
 }
 
 fn is_one(value: Choice, wanted: Option<Choice>) -> bool {

@@ -11,8 +11,14 @@ pub(super) enum Need {
     Number(&'static Key<f64>),
     /// Another attribute with one of these values, or with any but the first where there is none.
     Choice(&'static Key<Choice>, Option<Choice>),
+    /// Another attribute with one of several values.
+    OneOf(&'static Key<Choice>, &'static [Choice]),
+    /// Any of some numbers that is ever above zero.
+    Positive(&'static [&'static Key<f64>]),
     /// A switch that is ever on.
     On(&'static Key<bool>),
+    /// Any of some switches that is ever on.
+    AnyOn(&'static [&'static Key<bool>]),
     /// Particles that are born: by an emitter, or by an event.
     Births,
     /// Any of some other attributes, given.
@@ -35,7 +41,12 @@ const MANUAL: Choice = Choice(0);
 const BY_VOLUME: Choice = Choice(1);
 
 /// `emitterType`.
+const DIRECTIONAL: Choice = Choice(0);
+const SURFACE: Choice = Choice(2);
+const CURVE: Choice = Choice(3);
 const VOLUME: Choice = Choice(4);
+/// `volumeShape` of an emitter.
+const TORUS: Choice = Choice(4);
 
 /// A ramp of particles and the end of its range, which have no effect without an input.
 macro_rules! ramp {
@@ -235,6 +246,11 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     ramp!(SURFACE_TENSION_SCALE up to SURFACE_TENSION_SCALE_INPUT_MAX over SURFACE_TENSION_SCALE_INPUT),
     ramp!(OPACITY_SCALE up to OPACITY_SCALE_INPUT_MAX over OPACITY_SCALE_INPUT),
     ramp!(RADIUS_SCALE up to RADIUS_SCALE_INPUT_MAX over RADIUS_SCALE_INPUT),
+    Dependency {
+        rows: &[&n_particle::RADIUS_SCALE_INPUT.row],
+        need: Need::Given(&[&n_particle::RADIUS_SCALE.row, &n_particle::RADIUS_SCALE_RANDOMIZE.row]),
+        help: "give the ramp: `radiusScale: [(0, 1), (1, 0.2)]`",
+    },
     ramp!(POINT_FIELD_SCALE up to POINT_FIELD_SCALE_INPUT_MAX over POINT_FIELD_SCALE_INPUT),
     Dependency {
         rows: &[&field::USE_MAX_DISTANCE.row],
@@ -281,5 +297,55 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
         ],
         need: Need::Choice(&point_emitter::EMITTER_TYPE, Some(VOLUME)),
         help: "write `emitterType: volume`",
+    },
+    Dependency {
+        rows: &[&point_emitter::SECTION_RADIUS.row],
+        need: Need::Choice(&point_emitter::VOLUME_SHAPE, Some(TORUS)),
+        help: "write `volumeShape: torus`",
+    },
+    Dependency {
+        rows: &[&point_emitter::VOLUME_SWEEP.row],
+        need: Need::Choice(&point_emitter::VOLUME_SHAPE, None),
+        help: "a cube has no sweep: write `volumeShape: cylinder` or another round one",
+    },
+    Dependency {
+        rows: &[&point_emitter::SPREAD.row],
+        need: Need::Choice(&point_emitter::EMITTER_TYPE, Some(DIRECTIONAL)),
+        help: "write `emitterType: directional`",
+    },
+    Dependency {
+        rows: &[&point_emitter::NORMAL_SPEED.row, &point_emitter::TANGENT_SPEED.row],
+        need: Need::OneOf(&point_emitter::EMITTER_TYPE, &[SURFACE, CURVE]),
+        help: "write `emitterType: surface` or `curve`; others have `speed` and the speeds of a volume",
+    },
+    Dependency {
+        rows: &[&point_emitter::RATE_MAP.row, &point_emitter::ENABLE_TEXTURE_RATE.row],
+        need: Need::Choice(&point_emitter::EMITTER_TYPE, Some(SURFACE)),
+        help: "write `emitterType: surface`",
+    },
+    Dependency {
+        rows: &[&point_emitter::RATE_MAP.row, &point_emitter::EMIT_FROM_DARK.row],
+        need: Need::On(&point_emitter::ENABLE_TEXTURE_RATE),
+        help: "write `enableTextureRate: true`",
+    },
+    Dependency {
+        rows: &[&point_emitter::ENABLE_TEXTURE_RATE.row],
+        need: Need::Given(&[&point_emitter::RATE_MAP.row]),
+        help: "give the texture: `rateMap: texture(\"rate.png\")`",
+    },
+    Dependency {
+        rows: &[&n_cloth::BEND_ANGLE_DROPOFF.row, &n_cloth::RESTITUTION_ANGLE.row],
+        need: Need::Positive(&[&n_cloth::BEND_RESISTANCE, &n_cloth::BEND_STIFFNESS]),
+        help: "give `bendResistance`",
+    },
+    Dependency {
+        rows: &[&n_base::SELF_COLLISION_FLAG.row, &n_cloth::SELF_COLLIDE_WIDTH_SCALE.row],
+        need: Need::On(&n_base::SELF_COLLIDE),
+        help: "write `selfCollide: true`",
+    },
+    Dependency {
+        rows: &[&n_base::FRICTION.row],
+        need: Need::AnyOn(&[&n_base::COLLIDE, &n_base::SELF_COLLIDE]),
+        help: "write `collide: true`",
     },
 ];

@@ -274,6 +274,83 @@ fn a_rest_shape_that_changes_is_a_warning() {
 }
 
 #[test]
+fn an_attribute_of_an_emitter_of_another_type_is_a_warning() {
+    let of = |attributes: &str| {
+        let nodes = r#""p": nParticle(), "plane": polyPlane(), "e": pointEmitter(target: "p", "#;
+        let found = warnings(&(r#""nucleus1": nucleus(),"#.to_owned() + nodes + attributes + ")"));
+        found.into_iter().map(|message| message.replace(" of `e` has no effect", "")).collect::<Vec<_>>()
+    };
+    let surface = r#"emitterType: surface, parent: "plane""#;
+    for (attributes, expected) in [
+        (format!(r#"{surface}, rateMap: texture("no.png")"#), "`rateMap`: `enableTextureRate` is false"),
+        (format!("{surface}, enableTextureRate: true"), "`enableTextureRate`: it needs `rateMap`"),
+        (format!("{surface}, emitFromDark: true"), "`emitFromDark`: `enableTextureRate` is false"),
+        (format!("{surface}, spread: 0.5"), "`spread`: `emitterType` is surface"),
+        ("spread: 0.5".to_owned(), "`spread`: `emitterType` is omni"),
+        ("normalSpeed: 2".to_owned(), "`normalSpeed`: `emitterType` is omni"),
+        ("tangentSpeed: 2".to_owned(), "`tangentSpeed`: `emitterType` is omni"),
+        ("emitterType: volume, sectionRadius: 0.2".to_owned(), "`sectionRadius`: `volumeShape` is cube"),
+        ("emitterType: volume, volumeSweep: 90".to_owned(), "`volumeSweep`: `volumeShape` is cube"),
+        ("sectionRadius: 0.2".to_owned(), "`sectionRadius`: `emitterType` is omni"),
+    ] {
+        assert_eq!(of(&attributes), [expected], "{attributes}");
+    }
+    for attributes in [
+        format!("{surface}, normalSpeed: 2, tangentSpeed: 1, emitFromDark: false"),
+        "spread: 0, tangentSpeed: 0".to_owned(),
+        "emitterType: directional, spread: 0.5".to_owned(),
+        "emitterType: volume, volumeShape: torus, sectionRadius: 0.2, volumeSweep: 90".to_owned(),
+    ] {
+        assert_eq!(of(&attributes), Vec::<String>::new(), "{attributes}");
+    }
+}
+
+#[test]
+fn an_attribute_of_something_that_is_switched_off_is_a_warning() {
+    for (attributes, expected) in [
+        (
+            "bendResistance: 0, bendAngleDropoff: 0.5",
+            "`bendAngleDropoff` of `cloth1` has no effect: `bendResistance` is 0",
+        ),
+        (
+            "bendResistance: 0, restitutionAngle: 20",
+            "`restitutionAngle` of `cloth1` has no effect: `bendResistance` is 0",
+        ),
+        (
+            "selfCollide: false, selfCollisionFlag: vertex",
+            "`selfCollisionFlag` of `cloth1` has no effect: `selfCollide` is false",
+        ),
+        (
+            "selfCollide: false, selfCollideWidthScale: 2",
+            "`selfCollideWidthScale` of `cloth1` has no effect: `selfCollide` is false",
+        ),
+        (
+            "collide: false, selfCollide: false, friction: 0.5",
+            "`friction` of `cloth1` has no effect: `collide` is false",
+        ),
+    ] {
+        assert_eq!(warnings(&sheet("", attributes)), [expected]);
+    }
+    for attributes in [
+        "bendResistance: 0, bendStiffness: 1, bendAngleDropoff: 0.5",
+        "bendResistance: keys([(1, 0), (9, 1)]), restitutionAngle: 20",
+        "selfCollide: keys([(1, false), (9, true)]), selfCollisionFlag: vertex",
+        "collide: false, friction: 0.5",
+    ] {
+        assert_eq!(warnings(&sheet("", attributes)), Vec::<String>::new(), "{attributes}");
+    }
+    let rigid = r#""ball": polySphere(), "r": nRigid(inputMesh: "ball", collide: false, friction: 1)"#;
+    let found = warnings(&(sheet("", "") + rigid));
+    assert_eq!(found, ["`friction` of `r` has no effect: `collide` is false"]);
+    let particles = r#""nucleus1": nucleus(), "p": nParticle(position0: [(0, 0, 0)], radiusScaleInput: age)"#;
+    let found = warnings(particles);
+    assert_eq!(
+        found,
+        ["`radiusScaleInput` of `p` has no effect: it needs `radiusScale` or `radiusScaleRandomize`"]
+    );
+}
+
+#[test]
 fn an_object_that_is_connected_to_no_nucleus_is_a_warning() {
     let text = r#"Scene(time: (start: 1, end: 2, fps: 24), nodes: {
         "n": nucleus(), "p": polyPlane(), "c": nCloth(inputMesh: "p"), "r": nRigid(nucleus: "n"),
