@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::syntax::{self, Node, Value};
-use crate::attributes::{NodeType, node_type};
+use crate::attributes::{Attribute, NodeType, node_type};
 
 /// A change of one attribute.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +95,11 @@ fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>,
     let row = node_type.and_then(|of| of.attribute(&edit.attribute));
     let is_named = |word: &str| word == edit.attribute || row.is_some_and(|row| row.short == word);
     let own = fields.iter().find(|(word, _)| is_named(&word.text)).map(|(_, value)| value);
+    if let (None, Some(row), NewValue::Text(new)) = (own, row, &edit.to)
+        && replace_components(text, row, fields, &format!("{}: {new}", edit.attribute), changes)
+    {
+        return;
+    }
     match own.or_else(|| component(node_type?, fields, &edit.attribute)) {
         Some(value) => match &edit.to {
             NewValue::Text(new) => changes.push((value.span.clone(), new.clone())),
@@ -114,6 +119,32 @@ fn change(text: &str, body: &Node, edit: &Edit, changes: &mut Vec<(Range<usize>,
             changes.push((place, if is_second { format!(", {new}") } else { new }));
         }
     }
+}
+
+/// Replaces the fields of components of a vector by one of the whole. `false` if there are none.
+fn replace_components(
+    text: &str,
+    row: &Attribute,
+    fields: &[(syntax::Word, Node)],
+    new: &str,
+    changes: &mut Vec<(Range<usize>, String)>,
+) -> bool {
+    let Some(parts) = row.parts() else { return false };
+    let is_part = |(word, _): &&(syntax::Word, Node)| {
+        parts.iter().any(|(long, short)| *long == word.text || *short == word.text)
+    };
+    let mut found = fields.iter().filter(is_part);
+    let Some((word, value)) = found.next() else { return false };
+    changes.push((word.span.start..value.span.end, new.to_owned()));
+    for (word, value) in found {
+        let after = &text[value.span.end..];
+        let comma = after.trim_start().strip_prefix(',').map_or(0, |rest| {
+            let rest = rest.strip_prefix(' ').unwrap_or(rest);
+            after.len() - rest.len()
+        });
+        changes.push((word.span.start..value.span.end + comma, String::new()));
+    }
+    true
 }
 
 /// The value of a component of a vector: of its own field, or within the vector.
@@ -252,6 +283,23 @@ Scene(
         assert!(of_plane("translate: (1, 2, 3)", "translateY").contains("polyPlane(translate: (1, 7, 3))"));
         assert!(of_plane("ty: 2", "translateY").contains("polyPlane(ty: 7)"));
         assert!(of_plane("width: 2", "translateY").contains("polyPlane(width: 2, translateY: 7)"));
+    }
+
+    #[test]
+    fn a_vector_replaces_its_components() {
+        let of_plane = |set: &str| {
+            let scene = TEXT.replace("polyPlane()", &format!("polyPlane({set})"));
+            let edited = edit(&scene, &[of("plane", "translate", text("(0, 2, 0)"))]).unwrap();
+            assert!(read_scene_text(&edited, "a.ron".as_ref()).is_ok(), "{edited}");
+            edited
+        };
+        assert!(of_plane("translateY: 1").contains("polyPlane(translate: (0, 2, 0))"));
+        assert!(
+            of_plane("ty: keys([(1, 1), (5, 2)]), width: 2")
+                .contains("polyPlane(translate: (0, 2, 0), width: 2)")
+        );
+        let two = of_plane("translateX: 3, width: 2, translateY: 1, height: 4");
+        assert!(two.contains("polyPlane(translate: (0, 2, 0), width: 2, height: 4)"), "{two}");
     }
 
     #[test]
