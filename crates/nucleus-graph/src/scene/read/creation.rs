@@ -12,14 +12,14 @@ use super::connections::Connections;
 use super::references::{self, References, Resolved};
 
 /// Makes the connections of Maya's creation commands, in the order of names: objects first, then constraints, then
-/// fields and emitters.
+/// fields and emitters. Returns the nodes whose nucleus is not known, which has been reported.
 pub(super) fn connect(
     graph: &mut Graph,
     references: &References,
     connections: &Connections,
     source: &mut Source,
     findings: &mut Findings,
-) {
+) -> BTreeSet<NodeId> {
     let resolved = references::resolve(graph, references, source, findings);
     let mut creator = Creator {
         ends: connections.ends(graph),
@@ -32,6 +32,7 @@ pub(super) fn connect(
         findings,
         nuclei: BTreeMap::new(),
         reported_no_nucleus: false,
+        without_nucleus: BTreeSet::new(),
     };
     let nodes: Vec<(NodeId, &'static NodeType)> =
         creator.graph.iter().map(|(id, node)| (id, node.node_type())).collect();
@@ -39,6 +40,7 @@ pub(super) fn connect(
     of(&n_base::N_BASE).for_each(|&(id, node_type)| creator.connect_object(id, node_type));
     of(&dynamic_constraint::DYNAMIC_CONSTRAINT).for_each(|&(id, _)| creator.connect_constraint(id));
     of(&dyn_base::DYN_BASE).for_each(|&(id, _)| creator.connect_effect(id));
+    creator.without_nucleus
 }
 
 /// Connects nodes to their nuclei.
@@ -58,6 +60,8 @@ struct Creator<'a> {
     nuclei: BTreeMap<NodeId, NodeId>,
     /// Whether the lack of a nucleus has been reported.
     reported_no_nucleus: bool,
+    /// Nodes whose nucleus is not known.
+    without_nucleus: BTreeSet<NodeId>,
 }
 
 impl Creator<'_> {
@@ -175,6 +179,7 @@ impl Creator<'_> {
                 self.findings.error(&place, message).help(help);
             }
         }
+        self.without_nucleus.insert(id);
         None
     }
 

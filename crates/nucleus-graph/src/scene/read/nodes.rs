@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::attributes::{
-    Attribute, Effect, Kind, Value as AttrValue, dyn_base, n_base, read_component, time,
+    Attribute, Effect, Kind, Value as AttrValue, dyn_base, n_base, point_emitter, read_component, time,
 };
 use crate::diagnostic::{Findings, Severity, listed, nearest};
 use crate::graph::{CLOCK, Channel, Graph, NodeId, Setting};
@@ -78,7 +78,7 @@ pub(super) fn read_nodes(
         }
     }
     references.names.entry(CLOCK.to_owned()).or_insert(Some(graph.clock()));
-    creation::connect(&mut graph, &references, connections, source, findings);
+    broken.extend(creation::connect(&mut graph, &references, connections, source, findings));
     let is_broken = |name: &str| references.names.get(name).is_some_and(Option::is_none);
     connections.connect(&mut graph, &is_broken, findings);
     (graph, broken)
@@ -358,6 +358,13 @@ impl NodeReader<'_, '_> {
         let near = nearest(&word.text, settable.chain(parts.iter().map(String::as_str)));
         let message =
             format!("`{name}` is of type {}, which has no attribute `{}`", node_type.name, word.text);
-        self.findings.error(&word.span, message).did_you_mean(near);
+        let error = self.findings.error(&word.span, message);
+        if word.text == n_base::INPUT_MESH.row.name && node_type.is_a(&point_emitter::POINT_EMITTER) {
+            error.help(
+                "a surface emitter names its mesh as its parent: `emitterType: surface, parent: \"plane\"`",
+            );
+        } else {
+            error.did_you_mean(near);
+        }
     }
 }

@@ -36,6 +36,29 @@ fn the_nearest_attribute_is_suggested() {
 }
 
 #[test]
+fn the_parent_of_a_surface_emitter_is_suggested_for_its_mesh() {
+    expect(
+        &with_nodes(r#""p": polyPlane(), "e": pointEmitter(inputMesh: "p")"#),
+        &[(
+            "inputMesh",
+            "`e` is of type pointEmitter, which has no attribute `inputMesh`",
+            "a surface emitter names its mesh as its parent: `emitterType: surface, parent: \"plane\"`",
+        )],
+    );
+}
+
+#[test]
+fn an_object_whose_nucleus_is_not_known_is_reported_once() {
+    let text = with_nodes(
+        r#""n2": nucleus(), "m": polyPlane(), "c": nCloth(inputMesh: "m", nucleus: "n2"),
+           "r": nRigid(inputMesh: "m")"#,
+    );
+    let found = read_scene_text(&text, Path::new("test.ron")).map(|_| ()).expect_err("two nuclei");
+    let messages: Vec<&str> = found.iter().map(|found| found.message.as_str()).collect();
+    assert_eq!(messages, ["`r` could belong to `n2` or `nucleus1`"]);
+}
+
+#[test]
 fn a_check_of_gaps_above_the_thickness_is_refused() {
     let scene = |checks: &str| with_nodes("").replacen("nodes:", &format!("checks: [{checks}], nodes:"), 1);
     assert!(read_scene_text(&scene("minGap(1)"), Path::new("test.ron")).is_ok());
