@@ -47,6 +47,11 @@ pub struct Sample {
 }
 
 impl Sample {
+    #[cfg(test)]
+    pub(crate) fn new(frame: i32, [substep, substeps]: [u32; 2], frame_time: f64) -> Self {
+        Self { frame, substep, substeps, frame_time, moment: 0 }
+    }
+
     /// Whether it is the end of its frame.
     pub fn ends_frame(&self) -> bool {
         self.substep == self.substeps

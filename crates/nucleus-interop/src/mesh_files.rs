@@ -67,7 +67,7 @@ fn each_file<R: Read + Seek>(
 ) -> Result<(), ExportError> {
     let names = file_names(clip.objects().map(|object| object.name.as_str()));
     for sample in 0..clip.samples().len() {
-        let frame = numbered(&clip.samples()[sample]);
+        let frame = numbered(clip.samples(), sample);
         for (object, name) in names.iter().enumerate() {
             let mut file = output.file(folder.join(format!("{name}.{frame}.{end}")))?;
             if let Some(LiquidSurface { positions, quads }) = clip.surface(object, sample)? {
@@ -92,14 +92,31 @@ fn each_file<R: Read + Seek>(
     Ok(())
 }
 
-/// `0012` for the end of frame 12, `0012_02of10` for a substep after it: from frame 0 on, file names sort in order of time.
-pub(crate) fn numbered(sample: &Sample) -> String {
-    let Sample { frame, substep, substeps, .. } = *sample;
-    let digits = substeps.to_string().len();
-    match sample.ends_frame() {
-        true => format!("{frame:04}"),
-        false => format!("{:04}_{substep:0digits$}of{substeps}", frame - 1),
+/// `0012` for the end of frame 12, `0012_02of10` for 2/10 of a frame after it: from frame 0 on, file names sort in order of
+/// time.
+pub(crate) fn numbered(samples: &[Sample], index: usize) -> String {
+    let sample = &samples[index];
+    if sample.ends_frame() {
+        return format!("{:04}", sample.frame);
     }
+    let parts = i64::from(parts_of_frame(samples, index));
+    let time = (sample.frame_time * parts as f64).round() as i64;
+    let (frame, part, digits) = (time.div_euclid(parts), time.rem_euclid(parts), parts.to_string().len());
+    if part == 0 { format!("{frame:04}") } else { format!("{frame:04}_{part:0digits$}of{parts}") }
+}
+
+/// The least number of equal parts of a frame of which each sample in it ends one: the substeps, or with solvers of 2 and of 3
+/// substeps, 6. Millionths where there is none below 1000.
+fn parts_of_frame(samples: &[Sample], index: usize) -> u32 {
+    let is_near = |sample: &&Sample| sample.frame == samples[index].frame;
+    let (before, after) = samples.split_at(index);
+    let own = || before.iter().rev().take_while(is_near).chain(after.iter().take_while(is_near));
+    let are_whole = |parts: &u32| {
+        let parts = f64::from(*parts);
+        // Times in a cache are whole nanoseconds.
+        own().map(|sample| sample.frame_time).all(|time| (time - (time * parts).round() / parts).abs() < 1e-6)
+    };
+    (1..1000).find(are_whole).unwrap_or(1_000_000)
 }
 
 /// Writes an object as OBJ with these positions, points without faces included. Blender keeps those when it imports PLY,
@@ -242,5 +259,30 @@ fn write_ply_mesh(file: &mut OutFile, mesh: &MeshSample) {
                 .for_each(|x| file.bytes(&x.to_le_bytes()));
         }
         next += face.len();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(times: &[f64]) -> Vec<String> {
+        let substeps = times.len() as u32;
+        let sample = |(substep, &frame_time): (u32, &f64)| {
+            let frame = times[times.len() - 1] as i32;
+            Sample::new(frame, [substep, substeps], frame_time)
+        };
+        let samples: Vec<Sample> = (1..).zip(times).map(sample).collect();
+        (0..samples.len()).map(|index| numbered(&samples, index)).collect()
+    }
+
+    #[test]
+    fn the_file_names_of_substeps_state_their_times() {
+        assert_eq!(names(&[1.25, 1.5, 1.75, 2.0]), ["0001_1of4", "0001_2of4", "0001_3of4", "0002"]);
+        // Solvers of two and of three substeps.
+        let uneven = names(&[1.0 + 1.0 / 3.0, 1.5, 1.0 + 2.0 / 3.0, 2.0]);
+        assert_eq!(uneven, ["0001_2of6", "0001_3of6", "0001_4of6", "0002"]);
+        // An interval of two frames.
+        assert_eq!(names(&[1.5, 2.0, 2.5, 3.0]), ["0001_1of2", "0002", "0002_1of2", "0003"]);
     }
 }

@@ -20,7 +20,7 @@ pub(crate) fn write<R: Read + Seek>(
 ) -> Result<(), ExportError> {
     let names = file_names(clip.objects().map(|object| object.name.as_str()));
     for sample in 0..clip.samples().len() {
-        let frame = numbered(&clip.samples()[sample]);
+        let frame = numbered(clip.samples(), sample);
         for (object, name) in names.iter().enumerate() {
             let positions = clip.positions(object, sample)?;
             let velocities = clip.velocities(object, sample)?;
@@ -36,8 +36,8 @@ pub(crate) fn write<R: Read + Seek>(
     for name in &names {
         let mut file = output.file(folder.join(format!("{name}.pvd")))?;
         file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n");
-        for sample in clip.samples() {
-            let (time, frame) = (sample.frame_time / clip.fps(), numbered(sample));
+        for (index, sample) in clip.samples().iter().enumerate() {
+            let (time, frame) = (sample.frame_time / clip.fps(), numbered(clip.samples(), index));
             file.text(format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{name}.{frame}.vtu\"/>\n"));
         }
         file.text("  </Collection>\n</VTKFile>\n");
