@@ -34,7 +34,7 @@ node_table! {
     "Nucleus (open)" {
         /// Constraint of Maya's menu, which sets the defaults of the other attributes. `transform` alone pins points to its transform; with a strength or another attribute of springs it holds them by springs.
         CONSTRAINT_TYPE: Choice = choice("constraintType", "type", 0, CONSTRAINT_TYPES).solved("nucleus_graph::compile::constraints").fixed().extension();
-        /// The constrained components: `["cloth1.vtx[8:16]", "cloth1.e[border]", "cloth1.where(y > 1.49)", "ball"]`. A whole object or border stands for its border edges in `weldBorders`.
+        /// The constrained components: `["cloth1.vtx[8:16]", "cloth1.e[border]", "cloth1.where(y > 1.49)", "ball"]`. `where` compares places in the space of the mesh, before its transform. A whole object or border stands for its border edges in `weldBorders`.
         COMPONENTS: Vec<Component> = components("components", "components").solved("nucleus_graph::compile::constraints").extension();
         /// Its nucleus. Default: the only one of the scene.
         NUCLEUS: Plugged = node("nucleus", "nucleus", None).solved("nucleus_graph::graph").extension();

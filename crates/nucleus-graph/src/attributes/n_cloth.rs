@@ -51,7 +51,7 @@ node_table! {
         INPUT_MESH_ATTRACT: f64 = float("inputMeshAttract", "imat", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");
         /// Whether points whose attraction is 1 or greater are locked to the input mesh.
         INPUT_ATTRACT_METHOD: Choice = choice("inputAttractMethod", "iatm", 0, &[(0, "Non locking"), (1, "Lock values of 1.0 or greater")]).solved("nucleus_graph::compile::input_mesh");
-        /// Damping of the attraction to the input mesh, as a share of critical damping: 1 does not overshoot.
+        /// Damping of the attraction to the input mesh, as a share of critical damping: at 1 cloth does not overshoot a mesh at rest; a mesh that moves gives it speed.
         INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");
         /// Rate at which velocities approach those of the input mesh, per 1/24 s.
         INPUT_MOTION_DRAG: f64 = float("inputMotionDrag", "imdr", 0.0).soft(0.0, 1.0).solved("nucleus_core::constraints::attract");

@@ -111,7 +111,7 @@ node_table! {
         DAMP: f64 = float("damp", "adng", 0.0).min(0.0).soft(0.0, 10.0).solved("nucleus_core::particles::slowing");
         /// Strength of the attraction to an input mesh.
         INPUT_ATTRACT: f64 = float("inputAttract", "iatt", 0.0).soft(0.0, 1.0).elsewhere("particles are made from no mesh that could draw them; nCloth has `inputMeshAttract`");
-        /// Damping of the oscillation about the input mesh: 0 is undamped, 1 does not overshoot.
+        /// Damping of the oscillation about the input mesh: 0 is undamped, 1 is critical.
         INPUT_ATTRACT_DAMP: f64 = float("inputAttractDamp", "iadm", 0.5).soft(0.0, 1.0).elsewhere("particles are made from no mesh that could draw them; nCloth has `inputMeshAttract`");
         /// Excludes the object from the solver's gravity.
         IGNORE_SOLVER_GRAVITY: bool = toggle("ignoreSolverGravity", "igsg", false).solved("nucleus_core::integrate::predict");

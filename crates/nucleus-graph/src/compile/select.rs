@@ -170,7 +170,14 @@ impl Compiler<'_> {
             }
             if found.len() == before && self.findings.errors() == 0 {
                 let message = format!("has no {}s in `{text}`", kind.noun());
-                self.refuse_selection(of, &message, "`nucleus info --points` lists what is selected");
+                let help = match text.contains("where(") {
+                    true => {
+                        "x, y and z are places in the space of the mesh, before its transform; `nucleus info --points` \
+                         lists what is selected"
+                    }
+                    false => "`nucleus info --points` lists what is selected",
+                };
+                self.refuse_selection(of, &message, help);
             }
         }
         let mut seen = BTreeSet::new();

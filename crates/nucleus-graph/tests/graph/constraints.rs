@@ -107,6 +107,13 @@ fn components_that_are_not_there_or_empty_are_errors_that_name_constraint_and_co
 }
 
 #[test]
+fn an_expression_that_selects_nothing_names_the_space_of_its_places() {
+    let nodes = SHEET.replace("subdivisions: (2, 2)", "subdivisions: (2, 2), translateY: 2");
+    let (_, help) = error(&format!(r#"{nodes}"h": dynamicConstraint(components: ["c.where(y > 1.5)"])"#));
+    assert!(help.is_some_and(|help| help.contains("in the space of the mesh, before its transform")));
+}
+
+#[test]
 fn points_of_a_missing_mesh_are_reported_as_the_missing_file() {
     for file in ["none.obj", "none.ply"] {
         let nodes = format!(
