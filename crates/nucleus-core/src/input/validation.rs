@@ -18,7 +18,7 @@
 //! | You want to know… | Read |
 //! |---|---|
 //! | the range of an attribute | `attributes.rs` |
-//! | the documented range of every number, which `check_frame` demands | `ranges.rs` |
+//! | the documented range of every number, which `check_frame` demands | `ranges.rs`, `number.rs` |
 //! | which constraints and exclusions are valid | `constraints.rs` |
 //! | which fields are valid | `fields.rs` |
 //! | which births and changes of particles are valid | `particles.rs` |
@@ -27,6 +27,7 @@
 mod attributes;
 mod constraints;
 mod fields;
+mod number;
 mod particles;
 mod ranges;
 mod sanitized;
@@ -39,9 +40,9 @@ pub use attributes::{MAX_COORDINATE, MAX_FACTOR, is_in_range};
 use attributes::{is_duration, sanitize_cloth, sanitize_collider_settings, sanitize_settings};
 use constraints::{are_exclusions, is_valid_constraint, sanitize_constraint, sanitize_exclusions};
 use fields::{are_valid_fields, sanitize_fields};
+pub use number::{InputNumber, InputRange, InputSubject};
 use particles::{are_births, is_change, sanitize_particles};
 pub(crate) use ranges::first_out_of_range;
-pub use ranges::{InputNumber, InputRange, InputSubject};
 pub use sanitized::{InvalidInput, LastPositions, Sanitized};
 
 use crate::input::frame::{ClothFrame, ColliderFrame, FrameInput, InputMesh, Pin, StartVelocity};

@@ -95,7 +95,7 @@ pub enum Pressure {
 pub struct InputAttract {
     /// `inputMeshAttract`: 0 none, 1 firm.
     pub strength: f64,
-    /// `inputAttractDamp`: 0 springs, 1 does not overshoot.
+    /// `inputAttractDamp`: 0 springs, 1 does not overshoot a mesh at rest.
     pub damp: f64,
     /// `inputMotionDrag`: how fast velocities take up those of the input mesh.
     pub motion_drag: f64,

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::attributes::{MAX_COORDINATE, MIN_DURATION};
-use super::ranges::{InputNumber, InputRange, InputSubject};
+use super::number::{InputNumber, InputRange, InputSubject};
 use crate::input::links::Link;
 use crate::input::{ClothId, ColliderId, PointId};
 
