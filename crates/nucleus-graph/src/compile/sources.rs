@@ -7,10 +7,10 @@ use nalgebra::Vector3;
 use nucleus_core::{ClothId, PointId};
 
 use crate::graph::NodeId;
+use crate::paint::Texture;
 
 use super::animated_mesh::{AnimatedMesh, Points};
 use super::constraints::split_mesh::Tearing;
-use super::emission::RateMap;
 
 /// Source of the frames of a cloth or of particles.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,6 +96,25 @@ pub(super) struct EmittingMesh {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The share of the rate at each place; `None` where it is all of it.
     pub(super) rate: Option<Arc<RateMap>>,
+}
+
+/// The share of the rate of an emitter at each place of a mesh: a texture.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RateMap {
+    pub(super) texture: Texture,
+    /// Texture coordinates of the corners of each triangle.
+    pub(super) uvs: Vec<[[f64; 2]; 3]>,
+    pub(super) emits_from_dark: bool,
+}
+
+impl RateMap {
+    /// The share of the rate, from 0 to 1, at a place in a triangle.
+    pub(super) fn at(&self, triangle: usize, weights: [f64; 3]) -> f64 {
+        let corners = &self.uvs[triangle];
+        let along = |axis: usize| corners.iter().zip(weights).map(|(uv, weight)| uv[axis] * weight).sum();
+        let value = self.texture.at([along(0), along(1)]);
+        if self.emits_from_dark { 1.0 - value } else { value }
+    }
 }
 
 /// The state of an emitter from frame to frame.

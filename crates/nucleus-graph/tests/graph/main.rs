@@ -4,6 +4,7 @@ mod animation;
 mod constraints;
 mod contact;
 mod effects;
+mod emission;
 mod filled_particles;
 mod hostile;
 mod independence;

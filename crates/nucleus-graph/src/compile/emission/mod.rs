@@ -41,7 +41,6 @@ use super::sources::{Emitter, EmitterState, EmittingMesh};
 use curve::CurveShape;
 pub(super) use lifespan::{Lifespan, dies};
 use random::Random;
-pub(super) use rate_map::RateMap;
 use shapes::{Launch, PointShape, VolumeShape};
 
 /// `emitterType`.

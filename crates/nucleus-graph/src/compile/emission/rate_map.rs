@@ -7,28 +7,10 @@ use crate::animation::Affine;
 use crate::attributes::{Painting, Value, point_emitter};
 use crate::compile::compiler::Compiler;
 use crate::compile::geometry::placed_faces;
+use crate::compile::sources::RateMap;
 use crate::compile::texture_coordinates::of_mesh;
 use crate::graph::NodeId;
 use crate::paint::Texture;
-
-/// The share of the rate at each place of a mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::compile) struct RateMap {
-    texture: Texture,
-    /// Texture coordinates of the corners of each triangle.
-    uvs: Vec<[[f64; 2]; 3]>,
-    emits_from_dark: bool,
-}
-
-impl RateMap {
-    /// The share of the rate, from 0 to 1, at a place in a triangle.
-    pub(super) fn at(&self, triangle: usize, weights: [f64; 3]) -> f64 {
-        let corners = &self.uvs[triangle];
-        let along = |axis: usize| corners.iter().zip(weights).map(|(uv, weight)| uv[axis] * weight).sum();
-        let value = self.texture.at([along(0), along(1)]);
-        if self.emits_from_dark { 1.0 - value } else { value }
-    }
-}
 
 impl Compiler<'_> {
     /// The rate map of an emitter on a mesh of these faces, in the order of their triangles; `Some(None)` without one. `None`

@@ -8,12 +8,11 @@ use crate::animation::sin_cos_degrees;
 use crate::attributes::{n_base, n_cloth, point_emitter, surface_shape};
 use crate::compile::compiler::Compiler;
 use crate::compile::geometry::placed_faces;
-use crate::compile::sources::EmittingMesh;
+use crate::compile::sources::{EmittingMesh, RateMap};
 use crate::graph::{EvalContext, NodeId};
 use crate::mesh::doubled_area;
 
 use super::random::Random;
-use super::rate_map::RateMap;
 use super::start::{Speed, Start, turned_to};
 
 type Vec3 = Vector3<f64>;
