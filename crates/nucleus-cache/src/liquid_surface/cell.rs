@@ -111,7 +111,7 @@ fn faces() -> impl Iterator<Item = ((usize, usize), [usize; 4])> {
 
 /// The edge of a face from its `k`-th corner to the next.
 fn of_edge_of_face(axis: usize, corners: [usize; 4], k: usize) -> usize {
-    let along = if k % 2 == 0 { (axis + 1) % 3 } else { (axis + 2) % 3 };
+    let along = if k.is_multiple_of(2) { (axis + 1) % 3 } else { (axis + 2) % 3 };
     edge(corners[k], along)
 }
 

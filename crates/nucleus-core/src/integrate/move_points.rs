@@ -54,11 +54,12 @@ impl<R: Real> Kernel<R> for MovePoints<'_, R> {
         let gravity = [L::splat(gravity[0]), L::splat(gravity[1]), L::splat(gravity[2])];
         let impulse = [L::splat(impulse[0]), L::splat(impulse[1]), L::splat(impulse[2])];
         let (h, seconds, damped) = (L::splat(forces.h), L::splat(forces.seconds), L::splat(forces.damped));
-        let uniform: Option<Air<R>> = forces.air.map(|air| air.at(&AirFactors::NONE));
-        let uniform = match &uniform {
-            Some(air) => Some(AirLanes::<L>::of_points(|_| *air)),
-            None => None,
-        };
+        // Not a map: closures are not compiled for the lanes.
+        let mut uniform = None;
+        if let Some(air) = &forces.air {
+            let air: Air<R> = air.at(&AirFactors::NONE);
+            uniform = Some(AirLanes::<L>::of_points(|_| air));
+        }
         for first in (0..displacement.len()).step_by(4 * L::GROUPS) {
             let [x, y, z, inverse_mass] = load::<R, L>(displacement, first);
             let [u, v, w, fourth] = load::<R, L>(velocity, first);
