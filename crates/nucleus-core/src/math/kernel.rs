@@ -14,18 +14,35 @@ pub trait Kernel<R: Real> {
     unsafe fn run<L: Lanes<R>>(self);
 }
 
+/// A loop that takes eight at a time, in any register. Both kinds of lanes give the same bits.
+pub trait KernelOfEight<R: Real> {
+    /// Does the loop, as [`Kernel::run`].
+    ///
+    /// # Safety
+    /// Stated by the implementation; the machine has the lanes.
+    unsafe fn run_eight<L: Lanes<R, Array = [[R; 4]; 2]>>(self);
+}
+
+impl<R: Real, K: Kernel<R>> KernelOfEight<R> for K {
+    #[inline(always)]
+    unsafe fn run_eight<L: Lanes<R, Array = [[R; 4]; 2]>>(self) {
+        // SAFETY: the caller's promise.
+        unsafe { self.run::<L>() }
+    }
+}
+
 /// Runs a kernel with eight lanes.
 ///
 /// # Safety
 /// See the kernel.
-pub unsafe fn run<R: Real>(kernel: impl Kernel<R>) {
+pub unsafe fn run<R: Real>(kernel: impl KernelOfEight<R>) {
     // SAFETY: the caller's promise, and the machine has the lanes.
     unsafe {
         #[cfg(target_arch = "x86_64")]
         if R::has_wide_lanes() {
             return run_avx2(kernel);
         }
-        kernel.run::<Two<R::Lanes>>();
+        kernel.run_eight::<Two<R::Lanes>>();
     }
 }
 
@@ -33,9 +50,9 @@ pub unsafe fn run<R: Real>(kernel: impl Kernel<R>) {
 /// See the kernel; the machine has AVX2.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-unsafe fn run_avx2<R: Real>(kernel: impl Kernel<R>) {
+unsafe fn run_avx2<R: Real>(kernel: impl KernelOfEight<R>) {
     // SAFETY: the caller's promise.
-    unsafe { kernel.run::<R::Wide>() };
+    unsafe { kernel.run_eight::<R::Wide>() }
 }
 
 /// The numbers of the rows from one on, side by side, as many as there are lanes; beyond the last row, those of the last.

@@ -6,9 +6,9 @@ use crate::union_find::UnionFind;
 
 use super::neighbours::{CHUNK, Neighbours, chunk_range};
 
-/// The volume of a body's ellipsoid of inertia, as a share of that of a ball of the same trace, below which it counts as a
-/// line: its turn about it is not defined.
-const FLATTEST: f64 = 1e-4;
+/// The determinant of the inertia of a body, as a share of that of a ball of the same trace, below which it counts as a line:
+/// its turn about that is not defined.
+const THINNEST: f64 = 1e-4;
 
 /// Bodies of particles that pairs join.
 #[derive(Debug, Default)]
@@ -86,7 +86,7 @@ impl ConnectedBodies {
 impl Body {
     fn find_turn(&mut self) {
         let mean = self.inertia.trace() / 3.0;
-        let is_solid = self.inertia.determinant() > FLATTEST * mean * mean * mean;
+        let is_solid = self.inertia.determinant() > THINNEST * mean * mean * mean;
         self.turn =
             self.inertia.try_inverse().filter(|_| is_solid).map(|inverse| inverse * self.angular_momentum);
     }

@@ -6,12 +6,13 @@
 //! step had made it, it let a liquid leave a floor that starts at 8 m/s with 29 m/s, and one that a piston left no room
 //! reached 37 km/s.
 
-use crate::math::{Lanes, Real, Two};
+use crate::math::Lanes;
+use crate::math::kernel::{self, KernelOfEight};
 use crate::parallel::thread_pool::ThreadPool;
 
 use super::grid::CellGrid;
 use super::kernel::REACH;
-use super::near::{CellBlocks, LANES, far_position};
+use super::near::{CellBlocks, fill_columns};
 use super::neighbours::{CHUNK, Neighbours, chunk_range};
 use super::walls::{NearWalls, Walls};
 
@@ -85,11 +86,7 @@ impl Excess {
     pub fn measure(&mut self, positions: &[[f32; 3]], walls: &Walls, pool: &ThreadPool) {
         let Self { measured, grid, columns, tasks, before, .. } = self;
         grid.sort(positions, REACH);
-        for (axis, column) in columns.iter_mut().enumerate() {
-            column.clear();
-            column.extend(grid.order().iter().map(|&particle| positions[particle as usize][axis]));
-            column.resize(positions.len() + LANES, far_position()[axis]);
-        }
+        fill_columns(columns, grid.order().iter().map(|&particle| positions[particle as usize]));
         let count = measured.len().div_ceil(CHUNK as usize);
         tasks.resize_with(tasks.len().max(count), Measurement::default);
         pool.for_each_mut(&mut tasks[..count], |task, found| {
@@ -118,35 +115,30 @@ impl Measurement {
     fn measure(&mut self, particles: (&CellGrid, &[Vec<f32>; 3]), walls: &Walls) {
         self.about.clear();
         self.sums.clear();
-        self.sum(particles);
+        let (grid, columns) = particles;
+        // SAFETY: the sum has no condition.
+        #[allow(unsafe_code)]
+        unsafe {
+            kernel::run(SumDensities { measurement: self, grid, columns });
+        }
         self.walls.find(walls, &self.places, &mut self.sums);
     }
+}
 
-    fn sum(&mut self, particles: (&CellGrid, &[Vec<f32>; 3])) {
-        #[cfg(target_arch = "x86_64")]
-        if f32::has_wide_lanes() {
-            // SAFETY: the machine has AVX2.
-            #[allow(unsafe_code)]
-            return unsafe { self.sum_avx2(particles) };
-        }
-        self.sum_lanes::<Two<<f32 as Real>::Lanes>>(particles);
-    }
+/// Sums the kernel over all particles, by axis in the order of a grid.
+struct SumDensities<'a> {
+    measurement: &'a mut Measurement,
+    grid: &'a CellGrid,
+    columns: &'a [Vec<f32>; 3],
+}
 
+impl KernelOfEight<f32> for SumDensities<'_> {
     /// # Safety
-    /// The machine has AVX2.
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)]
-    #[target_feature(enable = "avx2")]
-    unsafe fn sum_avx2(&mut self, particles: (&CellGrid, &[Vec<f32>; 3])) {
-        self.sum_lanes::<<f32 as Real>::Wide>(particles);
-    }
-
+    /// The machine has the lanes.
     #[inline(always)]
-    fn sum_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
-        &mut self,
-        (grid, columns): (&CellGrid, &[Vec<f32>; 3]),
-    ) {
-        let Self { about, places, sums, .. } = self;
+    #[allow(unsafe_code)]
+    unsafe fn run_eight<W: Lanes<f32, Array = [[f32; 4]; 2]>>(self) {
+        let Self { measurement: Measurement { about, places, sums, .. }, grid, columns } = self;
         for &[x, y, z, _] in &*places {
             about.enter(grid, grid.cell([x, y, z]));
             sums.push([about.density::<W>(columns, [x, y, z]), 0.0, 0.0, 0.0]);

@@ -77,6 +77,15 @@ pub fn far_position() -> [f32; 4] {
     [FAR, FAR, FAR, Pair::tag(0)]
 }
 
+/// Takes up positions in the sorted order by axis, with eight far ones at the end.
+pub fn fill_columns(columns: &mut [Vec<f32>; 3], places: impl Iterator<Item = [f32; 3]> + Clone) {
+    for (axis, column) in columns.iter_mut().enumerate() {
+        column.clear();
+        column.extend(places.clone().map(|place| place[axis]));
+        column.extend([FAR; LANES]);
+    }
+}
+
 /// What is about a cell, in blocks of up to eight that follow each other in the sorted order.
 #[derive(Debug, Default)]
 pub struct CellBlocks {

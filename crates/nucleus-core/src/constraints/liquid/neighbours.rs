@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use crate::math::{Lanes, Real, Two};
+use crate::math::Lanes;
+use crate::math::kernel::{self, KernelOfEight};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
 use super::grid::CellGrid;
 use super::kernel::{REACH, weight};
-use super::near::{LANES, Sorted, Surroundings, far_position};
+use super::near::{Sorted, Surroundings, far_position, fill_columns};
 use super::pair::Pair;
 use super::walls::{NearWalls, Walls};
 
@@ -57,11 +58,7 @@ impl Neighbours {
             let [x, y, z] = positions[particle as usize];
             [x, y, z, Pair::tag(at)]
         }));
-        for (axis, column) in self.columns.iter_mut().enumerate() {
-            column.clear();
-            column.extend(self.positions.iter().map(|place| place[axis]));
-            column.resize(positions.len() + LANES, far_position()[axis]);
-        }
+        fill_columns(&mut self.columns, self.positions.iter().map(|&[x, y, z, _]| [x, y, z]));
         self.positions.push(far_position());
         let count = positions.len();
         self.chunks.resize_with(count.div_ceil(CHUNK as usize), Chunk::default);
@@ -129,46 +126,19 @@ impl Neighbours {
 }
 
 impl Chunk {
-    fn find(&mut self, sorted: Sorted<'_>, range: Range<u32>, out: (&mut [[f32; 4]], &mut [f32])) {
-        self.pairs.clear();
-        self.ends.clear();
-        self.surroundings.clear();
-        #[cfg(target_arch = "x86_64")]
-        if f32::has_wide_lanes() {
-            // SAFETY: the machine has AVX2.
-            #[allow(unsafe_code)]
-            return unsafe { self.find_avx2(sorted, range, out) };
-        }
-        self.find_lanes::<Two<<f32 as Real>::Lanes>>(sorted, range, out);
-    }
-
-    /// # Safety
-    /// The machine has AVX2.
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)]
-    #[target_feature(enable = "avx2")]
-    unsafe fn find_avx2(
-        &mut self,
-        sorted: Sorted<'_>,
-        range: Range<u32>,
-        out: (&mut [[f32; 4]], &mut [f32]),
-    ) {
-        self.find_lanes::<<f32 as Real>::Wide>(sorted, range, out);
-    }
-
-    #[inline(always)]
-    fn find_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
+    fn find(
         &mut self,
         sorted: Sorted<'_>,
         range: Range<u32>,
         (sums, squares): (&mut [[f32; 4]], &mut [f32]),
     ) {
-        for (at, (out, square)) in range.zip(sums.iter_mut().zip(squares)) {
-            let found = self.surroundings.find::<W>(sorted, at, &mut self.pairs);
-            self.ends.push(self.pairs.len() as u32);
-            *out = found.density;
-            out[0] += weight(0.0);
-            *square = found.squares;
+        self.pairs.clear();
+        self.ends.clear();
+        self.surroundings.clear();
+        // SAFETY: the search has no condition.
+        #[allow(unsafe_code)]
+        unsafe {
+            kernel::run(FindPairs { chunk: self, sorted, range, sums, squares });
         }
     }
 
@@ -176,33 +146,57 @@ impl Chunk {
     /// axis.
     #[inline(always)]
     pub fn sum_pairs(&self, of: impl Fn(usize) -> [f32; 4], out: &mut [[f32; 4]]) {
-        #[cfg(target_arch = "x86_64")]
-        if f32::has_wide_lanes() {
-            // SAFETY: the machine has AVX2.
-            #[allow(unsafe_code)]
-            return unsafe { self.sum_pairs_avx2(of, out) };
+        // SAFETY: the sum has no condition.
+        #[allow(unsafe_code)]
+        unsafe {
+            kernel::run(SumPairs { chunk: self, of, out });
         }
-        self.sum_pairs_lanes::<Two<<f32 as Real>::Lanes>>(of, out);
     }
+}
 
+/// The search for the pairs of a chunk.
+struct FindPairs<'a> {
+    chunk: &'a mut Chunk,
+    sorted: Sorted<'a>,
+    range: Range<u32>,
+    sums: &'a mut [[f32; 4]],
+    squares: &'a mut [f32],
+}
+
+impl KernelOfEight<f32> for FindPairs<'_> {
     /// # Safety
-    /// The machine has AVX2.
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)]
-    #[target_feature(enable = "avx2")]
-    unsafe fn sum_pairs_avx2(&self, of: impl Fn(usize) -> [f32; 4], out: &mut [[f32; 4]]) {
-        self.sum_pairs_lanes::<<f32 as Real>::Wide>(of, out);
-    }
-
+    /// The machine has the lanes.
     #[inline(always)]
-    fn sum_pairs_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
-        &self,
-        of: impl Fn(usize) -> [f32; 4],
-        out: &mut [[f32; 4]],
-    ) {
+    #[allow(unsafe_code)]
+    unsafe fn run_eight<W: Lanes<f32, Array = [[f32; 4]; 2]>>(self) {
+        let Self { chunk, sorted, range, sums, squares } = self;
+        for (at, (out, square)) in range.zip(sums.iter_mut().zip(squares)) {
+            let found = chunk.surroundings.find::<W>(sorted, at, &mut chunk.pairs);
+            chunk.ends.push(chunk.pairs.len() as u32);
+            *out = found.density;
+            out[0] += weight(0.0);
+            *square = found.squares;
+        }
+    }
+}
+
+/// Sums over the pairs of a chunk.
+struct SumPairs<'a, F> {
+    chunk: &'a Chunk,
+    of: F,
+    out: &'a mut [[f32; 4]],
+}
+
+impl<F: Fn(usize) -> [f32; 4]> KernelOfEight<f32> for SumPairs<'_, F> {
+    /// # Safety
+    /// The machine has the lanes.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    unsafe fn run_eight<W: Lanes<f32, Array = [[f32; 4]; 2]>>(self) {
+        let Self { chunk, of, out } = self;
         let mut first = 0;
-        for (&end, out) in self.ends.iter().zip(out) {
-            let (fours, rest) = self.pairs[first..end as usize].as_chunks::<4>();
+        for (&end, out) in chunk.ends.iter().zip(out) {
+            let (fours, rest) = chunk.pairs[first..end as usize].as_chunks::<4>();
             debug_assert!(rest.is_empty(), "pairs are a multiple of four");
             first = end as usize;
             // Two sums of two pairs at once: each addition would wait for the one before.
@@ -225,6 +219,9 @@ impl Chunk {
 mod tests {
     use super::super::grid::tests::spread;
     use super::*;
+    use crate::math::{Real, Two};
+
+    type Four = Two<<f32 as Real>::Lanes>;
 
     /// Places without a pattern in a box, two of them equal.
     fn scattered(count: usize, size: f32) -> Vec<[f32; 3]> {
@@ -268,10 +265,21 @@ mod tests {
         let sorted = Sorted { grid: &neighbours.grid, positions, columns };
         let mut chunk = Chunk::default();
         let (mut sums, mut squares) = (vec![[0.0; 4]; 256], vec![0.0; 256]);
-        chunk.find_lanes::<Two<<f32 as Real>::Lanes>>(sorted, 256..512, (&mut sums, &mut squares));
+        let find =
+            FindPairs { chunk: &mut chunk, sorted, range: 256..512, sums: &mut sums, squares: &mut squares };
+        // SAFETY: every machine has four lanes.
+        #[allow(unsafe_code)]
+        unsafe {
+            find.run_eight::<Four>();
+        }
         assert_eq!((&sums[..], &squares[..]), (&neighbours.sums[256..512], &neighbours.squares[256..512]));
         let [mut four, mut eight] = [vec![[0.0; 4]; 256], vec![[0.0; 4]; 256]];
-        chunk.sum_pairs_lanes::<Two<<f32 as Real>::Lanes>>(|other| positions[other], &mut four);
+        let sum = SumPairs { chunk: &chunk, of: |other: usize| positions[other], out: &mut four };
+        // SAFETY: every machine has four lanes.
+        #[allow(unsafe_code)]
+        unsafe {
+            sum.run_eight::<Four>();
+        }
         neighbours.chunks[1].sum_pairs(|other| positions[other], &mut eight);
         assert!(four.iter().zip(&eight).all(|(a, b)| a[..3] == b[..3]));
     }

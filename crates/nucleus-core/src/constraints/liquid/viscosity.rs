@@ -13,7 +13,8 @@
 //! a connected body of particles as if it were rigid: so every iterate keeps momentum and angular momentum. A block
 //! preconditioner would need fewer iterations too, but its iterates would keep them only to their tolerance.
 
-use crate::math::{Lanes, Real, Two};
+use crate::math::Lanes;
+use crate::math::kernel::{self, KernelOfEight};
 use crate::parallel::disjoint::DisjointSlice;
 use crate::parallel::thread_pool::ThreadPool;
 
@@ -151,50 +152,39 @@ fn multiply(
         let range = chunk_range(chunk, count);
         // SAFETY: chunks do not overlap.
         #[allow(unsafe_code)]
-        let out = unsafe { out.run(range.clone()) };
-        Rows { lines: &lines[chunk], ends: neighbours.ends(chunk), first: range.start as usize }
-            .multiply(x, out);
+        unsafe {
+            let out = out.run(range.clone());
+            let (lines, ends) = (&lines[chunk][..], neighbours.ends(chunk));
+            kernel::run(MultiplyRows { lines, ends, first: range.start as usize, x, out });
+        }
     });
-}
-
-/// The rows of the matrix of particles that follow each other.
-struct Rows<'a> {
-    lines: &'a [Pair],
-    /// End of each particle's lines.
-    ends: &'a [u32],
-    /// The first particle.
-    first: usize,
 }
 
 /// Lines that add nothing.
 const NO_LINES: [Pair; 4] = [Pair::new([0.0; 3], 0); 4];
 
-impl Rows<'_> {
-    fn multiply(&self, x: &[[f32; 4]], out: &mut [[f32; 4]]) {
-        #[cfg(target_arch = "x86_64")]
-        if f32::has_wide_lanes() {
-            // SAFETY: the machine has AVX2.
-            #[allow(unsafe_code)]
-            return unsafe { self.multiply_avx2(x, out) };
-        }
-        self.multiply_lanes::<Two<<f32 as Real>::Lanes>>(x, out);
-    }
+/// The product of a vector with the rows of the matrix of particles that follow each other.
+struct MultiplyRows<'a> {
+    lines: &'a [Pair],
+    /// End of each particle's lines.
+    ends: &'a [u32],
+    /// The first particle.
+    first: usize,
+    x: &'a [[f32; 4]],
+    out: &'a mut [[f32; 4]],
+}
 
+impl KernelOfEight<f32> for MultiplyRows<'_> {
     /// # Safety
-    /// The machine has AVX2.
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)]
-    #[target_feature(enable = "avx2")]
-    unsafe fn multiply_avx2(&self, x: &[[f32; 4]], out: &mut [[f32; 4]]) {
-        self.multiply_lanes::<<f32 as Real>::Wide>(x, out);
-    }
-
+    /// The machine has the lanes.
     #[inline(always)]
-    fn multiply_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(&self, x: &[[f32; 4]], out: &mut [[f32; 4]]) {
+    #[allow(unsafe_code)]
+    unsafe fn run_eight<W: Lanes<f32, Array = [[f32; 4]; 2]>>(self) {
+        let Self { lines, ends, first: first_row, x, out } = self;
         let mut first = 0;
-        for (k, (&end, out)) in self.ends.iter().zip(out).enumerate() {
-            let own = x[self.first + k];
-            let (fours, rest) = self.lines[first..end as usize].as_chunks::<4>();
+        for (k, (&end, out)) in ends.iter().zip(out).enumerate() {
+            let own = x[first_row + k];
+            let (fours, rest) = lines[first..end as usize].as_chunks::<4>();
             debug_assert!(rest.is_empty(), "lines are a multiple of four");
             first = end as usize;
             let at = [W::splat(own[0]), W::splat(own[1]), W::splat(own[2])];

@@ -2,12 +2,12 @@
 
 use std::f32::consts::PI;
 
-use crate::math::{Lanes, dot, sub};
+use crate::math::{Lanes, cross, dot, sub};
 
 use super::ball::BallKernel;
 use super::grid::CellGrid;
 use super::kernel::{REACH, sheet, weights_and_slopes};
-use super::near::{CellBlocks, LANES, far_position, lane_numbers, load, total};
+use super::near::{CellBlocks, LANES, fill_columns, lane_numbers, load, total};
 use super::pair::Pair;
 
 /// How far behind a surface the liquid begins that it counts as: the layers of particles beside it weigh as much as a
@@ -54,7 +54,7 @@ pub(super) struct Samples {
     balls: Vec<BallKernel>,
 }
 
-/// Samples in the order of the grid, with seven more that count nowhere.
+/// Samples in the order of the grid, with eight more that count nowhere.
 #[derive(Debug, Default)]
 struct Columns {
     place: [Vec<f32>; 3],
@@ -113,7 +113,7 @@ impl Samples {
         if !is_finite || (0..3).any(beyond) {
             return;
         }
-        let edge = |a: usize| length(minus(triangle[(a + 1) % 3], triangle[a]));
+        let edge = |a: usize| length(sub(triangle[(a + 1) % 3], triangle[a]));
         let [x, y, z] = [edge(0), edge(1), edge(2)];
         let a = if x >= y && x >= z {
             0
@@ -124,7 +124,7 @@ impl Samples {
         };
         let [a, b, c] = [a, (a + 1) % 3, (a + 2) % 3];
         let base = edge(a);
-        let area = length(cross(minus(triangle[b], triangle[a]), minus(triangle[c], triangle[a]))) / 2.0;
+        let area = length(cross(sub(triangle[b], triangle[a]), sub(triangle[c], triangle[a]))) / 2.0;
         self.max_offset = self.max_offset.max(offset);
         let strips = parts(2.0 * area / base.max(f32::MIN_POSITIVE));
         for strip in 0..strips {
@@ -161,20 +161,13 @@ impl Samples {
         }
         self.grid.sort(&self.places, REACH + self.max_offset);
         let Self { places, samples, grid, columns: Columns { place, limit, area, offset }, .. } = self;
-        let order = || grid.order().iter().map(|&at| at as usize);
-        for (axis, column) in place.iter_mut().enumerate() {
-            column.clear();
-            column.extend(order().map(|at| places[at][axis]));
-            column.resize(places.len() + LANES, far_position()[axis]);
-        }
-        let fill = |column: &mut Vec<f32>, of: &dyn Fn(&Sample) -> f32| {
-            column.clear();
-            column.extend(order().map(|at| of(&samples[at])));
-            column.resize(places.len() + LANES, 0.0);
-        };
-        fill(limit, &|sample| (REACH + sample.offset - GAP) * (REACH + sample.offset - GAP));
-        fill(area, &|sample| sample.area);
-        fill(offset, &|sample| sample.offset);
+        let order = grid.order().iter().map(|&at| at as usize);
+        fill_columns(place, order.clone().map(|at| places[at]));
+        let of = order.map(|at| &samples[at]);
+        let square = |x: f32| x * x;
+        fill(limit, of.clone().map(|sample| square(REACH + sample.offset - GAP)));
+        fill(area, of.clone().map(|sample| sample.area));
+        fill(offset, of.map(|sample| sample.offset));
     }
 
     /// The density that the samples add at a place, and its gradient; adds the pairs with those that can move. `about` keeps
@@ -264,6 +257,13 @@ impl Samples {
     }
 }
 
+/// Takes up a number of each sample, and eight zeros.
+fn fill(column: &mut Vec<f32>, numbers: impl Iterator<Item = f32>) {
+    column.clear();
+    column.extend(numbers);
+    column.extend([0.0; LANES]);
+}
+
 /// The density that parts of surfaces add at a distance, and its derivative over the distance.
 #[inline(always)]
 fn sheet_part<W: Lanes<f32>>(distance: W, area: W, offset: W) -> [W; 2] {
@@ -295,16 +295,8 @@ fn within([from, to]: [[f32; 3]; 2], [low, high]: [[f32; 3]; 2], parts: u32) -> 
     first..last.min(parts).max(first)
 }
 
-fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
 fn length(a: [f32; 3]) -> f32 {
-    (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
+    dot(a, a).sqrt()
 }
 
 #[cfg(test)]

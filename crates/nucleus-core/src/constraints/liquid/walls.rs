@@ -10,7 +10,8 @@
 //! particle of another object is a sample that weighs as a ball of liquid, so that two liquids share the volume, and the heavier
 //! one sinks.
 
-use crate::math::{Lanes, Real, Two};
+use crate::math::Lanes;
+use crate::math::kernel::{self, KernelOfEight};
 
 use super::kernel::{REACH, half_space};
 use super::near::CellBlocks;
@@ -226,39 +227,13 @@ pub struct NearWalls {
 impl NearWalls {
     /// Adds the density of all walls at some places, and its gradient, to `sums`; lists the pairs with those that can move.
     pub fn find(&mut self, walls: &Walls, places: &[[f32; 4]], sums: &mut [[f32; 4]]) {
-        #[cfg(target_arch = "x86_64")]
-        if f32::has_wide_lanes() {
-            // SAFETY: the machine has AVX2.
-            #[allow(unsafe_code)]
-            return unsafe { self.find_avx2(walls, places, sums) };
-        }
-        self.find_lanes::<Two<<f32 as Real>::Lanes>>(walls, places, sums);
-    }
-
-    /// # Safety
-    /// The machine has AVX2.
-    #[cfg(target_arch = "x86_64")]
-    #[allow(unsafe_code)]
-    #[target_feature(enable = "avx2")]
-    unsafe fn find_avx2(&mut self, walls: &Walls, places: &[[f32; 4]], sums: &mut [[f32; 4]]) {
-        self.find_lanes::<<f32 as Real>::Wide>(walls, places, sums);
-    }
-
-    #[inline(always)]
-    fn find_lanes<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
-        &mut self,
-        walls: &Walls,
-        places: &[[f32; 4]],
-        sums: &mut [[f32; 4]],
-    ) {
-        let Self { about, pairs, ends } = self;
-        about.iter_mut().for_each(CellBlocks::clear);
-        pairs.clear();
-        ends.clear();
-        for (&[x, y, z, _], sum) in places.iter().zip(sums) {
-            let added = walls.near::<W>([x, y, z], about, pairs);
-            (0..4).for_each(|k| sum[k] += added[k]);
-            ends.push(pairs.len() as u32);
+        self.about.iter_mut().for_each(CellBlocks::clear);
+        self.pairs.clear();
+        self.ends.clear();
+        // SAFETY: the search has no condition.
+        #[allow(unsafe_code)]
+        unsafe {
+            kernel::run(FindWalls { near: self, walls, places, sums });
         }
     }
 
@@ -267,6 +242,29 @@ impl NearWalls {
     pub fn pairs_of(&self, k: usize) -> &[Pair] {
         let first = if k == 0 { 0 } else { self.ends[k - 1] };
         &self.pairs[first as usize..self.ends[k] as usize]
+    }
+}
+
+/// The search for the walls beside some particles.
+struct FindWalls<'a> {
+    near: &'a mut NearWalls,
+    walls: &'a Walls,
+    places: &'a [[f32; 4]],
+    sums: &'a mut [[f32; 4]],
+}
+
+impl KernelOfEight<f32> for FindWalls<'_> {
+    /// # Safety
+    /// The machine has the lanes.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    unsafe fn run_eight<W: Lanes<f32, Array = [[f32; 4]; 2]>>(self) {
+        let Self { near: NearWalls { about, pairs, ends }, walls, places, sums } = self;
+        for (&[x, y, z, _], sum) in places.iter().zip(sums) {
+            let added = walls.near::<W>([x, y, z], about, pairs);
+            (0..4).for_each(|k| sum[k] += added[k]);
+            ends.push(pairs.len() as u32);
+        }
     }
 }
 
