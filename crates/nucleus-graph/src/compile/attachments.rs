@@ -153,6 +153,6 @@ impl EvaluationInterval<'_> {
             return held.to_vec();
         }
         let placement = moment.placement(source.constraint);
-        held.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect()
+        self.nucleus.units.placed(&placement, held)
     }
 }

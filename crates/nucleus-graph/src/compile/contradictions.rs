@@ -38,13 +38,7 @@ impl Compiler<'_> {
                     format!("`{}` is 0", key.row.name)
                 }
                 Need::Choice(key, wanted)
-                    if !graph.changes(object, key) && !is_one(node.get(key), *wanted) =>
-                {
-                    let word = key.row.words().into_iter().find(|(value, _)| *value == node.get(key));
-                    format!("`{}` is {}", key.row.name, word.map_or_else(String::new, |(_, word)| word))
-                }
-                Need::OneOf(key, wanted)
-                    if !graph.changes(object, key) && !wanted.contains(&node.get(key)) =>
+                    if !graph.changes(object, key) && !is_one(node.get(key), wanted) =>
                 {
                     let word = key.row.words().into_iter().find(|(value, _)| *value == node.get(key));
                     format!("`{}` is {}", key.row.name, word.map_or_else(String::new, |(_, word)| word))
@@ -52,11 +46,8 @@ impl Compiler<'_> {
                 Need::Positive(keys) if !keys.iter().any(|key| is_ever_positive(graph, object, key)) => {
                     format!("`{}` is 0", keys[0].row.name)
                 }
-                Need::AnyOn(keys) if !keys.iter().any(|key| is_ever_on(graph, object, key)) => {
+                Need::On(keys) if !keys.iter().any(|key| is_ever_on(graph, object, key)) => {
                     format!("`{}` is false", keys[0].row.name)
-                }
-                Need::On(key) if !graph.is_ever_nonzero(object, key) => {
-                    format!("`{}` is false", key.row.name)
                 }
                 Need::Given(rows) if !rows.iter().any(|row| graph.is_given_by_name(object, row.name)) => {
                     let names: Vec<String> = rows.iter().map(|row| format!("`{}`", row.name)).collect();
@@ -162,6 +153,6 @@ fn is_ever_on(graph: &Graph, object: NodeId, key: &Key<bool>) -> bool {
     graph.node(object).node_type().attribute(key.row.name).is_some() && graph.is_ever_nonzero(object, key)
 }
 
-fn is_one(value: Choice, wanted: Option<Choice>) -> bool {
-    wanted.map_or(value != Choice(0), |wanted| value == wanted)
+fn is_one(value: Choice, wanted: &[Choice]) -> bool {
+    if wanted.is_empty() { value != Choice(0) } else { wanted.contains(&value) }
 }

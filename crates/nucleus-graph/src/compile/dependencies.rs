@@ -10,15 +10,11 @@ pub(super) enum Need {
     /// Another attribute that is ever above zero.
     Number(&'static Key<f64>),
     /// Another attribute with one of these values, or with any but the first where there is none.
-    Choice(&'static Key<Choice>, Option<Choice>),
-    /// Another attribute with one of several values.
-    OneOf(&'static Key<Choice>, &'static [Choice]),
+    Choice(&'static Key<Choice>, &'static [Choice]),
     /// Any of some numbers that is ever above zero.
     Positive(&'static [&'static Key<f64>]),
-    /// A switch that is ever on.
-    On(&'static Key<bool>),
     /// Any of some switches that is ever on.
-    AnyOn(&'static [&'static Key<bool>]),
+    On(&'static [&'static Key<bool>]),
     /// Particles that are born: by an emitter, or by an event.
     Births,
     /// Any of some other attributes, given.
@@ -53,7 +49,7 @@ macro_rules! ramp {
     ($ramp:ident up to $most:ident over $input:ident) => {
         Dependency {
             rows: &[&n_particle::$ramp.row, &n_particle::$most.row],
-            need: Need::Choice(&n_particle::$input, None),
+            need: Need::Choice(&n_particle::$input, &[]),
             help: "say what the ramp is over: `radiusScaleInput: age`, and likewise for others",
         }
     };
@@ -63,7 +59,7 @@ macro_rules! ramp {
 pub(super) static DEPENDENCIES: &[Dependency] = &[
     Dependency {
         rows: &[&n_cloth::PRESSURE.row],
-        need: Need::Choice(&n_cloth::PRESSURE_METHOD, Some(MANUAL)),
+        need: Need::Choice(&n_cloth::PRESSURE_METHOD, &[MANUAL]),
         help: "the gas inside sets the pressure: leave out `pressureMethod`, or give `startPressure`",
     },
     Dependency {
@@ -74,7 +70,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
             &n_cloth::INCOMPRESSIBILITY.row,
             &n_cloth::SEAL_HOLES.row,
         ],
-        need: Need::Choice(&n_cloth::PRESSURE_METHOD, Some(BY_VOLUME)),
+        need: Need::Choice(&n_cloth::PRESSURE_METHOD, &[BY_VOLUME]),
         help: "write `pressureMethod: volumeTrackingModel`",
     },
     Dependency {
@@ -89,7 +85,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     Dependency {
         rows: &[&n_base::FIELD_MAGNITUDE.row, &n_base::FIELD_DISTANCE.row],
-        need: Need::Choice(&n_base::FORCE_FIELD, None),
+        need: Need::Choice(&n_base::FORCE_FIELD, &[]),
         help: "write `forceField: singleSided`, `doubleSided` or `alongNormal`",
     },
     Dependency {
@@ -98,7 +94,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
             &n_base::POINT_FIELD_DISTANCE.row,
             &n_base::SELF_ATTRACT.row,
         ],
-        need: Need::Choice(&n_base::POINT_FORCE_FIELD, None),
+        need: Need::Choice(&n_base::POINT_FORCE_FIELD, &[]),
         help: "write `pointForceField: worldspace` or `thicknessRelative`",
     },
     Dependency {
@@ -119,7 +115,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
             &n_cloth::WARP_STIFFNESS.row,
             &n_cloth::WEFT_STIFFNESS.row,
         ],
-        need: Need::On(&n_cloth::WEAVE),
+        need: Need::On(&[&n_cloth::WEAVE]),
         help: "write `weave: true`",
     },
     Dependency {
@@ -146,7 +142,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     Dependency {
         rows: &[&n_cloth::TETHER_SCALE.row, &n_cloth::LONG_LINKS.row],
-        need: Need::On(&n_cloth::TETHERS),
+        need: Need::On(&[&n_cloth::TETHERS]),
         help: "write `tethers: true`",
     },
     Dependency {
@@ -156,7 +152,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     Dependency {
         rows: &[&n_base::CACHE_FILE.row],
-        need: Need::On(&n_base::PLAY_FROM_CACHE),
+        need: Need::On(&[&n_base::PLAY_FROM_CACHE]),
         help: "write `playFromCache: true`",
     },
     Dependency {
@@ -187,7 +183,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
             &nucleus::PLANE_BOUNCE.row,
             &nucleus::PLANE_STICKINESS.row,
         ],
-        need: Need::On(&nucleus::USE_PLANE),
+        need: Need::On(&[&nucleus::USE_PLANE]),
         help: "write `usePlane: true`",
     },
     Dependency {
@@ -197,22 +193,22 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     Dependency {
         rows: &[&particle::LIFESPAN.row],
-        need: Need::Choice(&particle::LIFESPAN_MODE, None),
+        need: Need::Choice(&particle::LIFESPAN_MODE, &[]),
         help: "write `lifespanMode: constant`",
     },
     Dependency {
         rows: &[&particle::LIFESPAN_RANDOM.row],
-        need: Need::Choice(&particle::LIFESPAN_MODE, Some(particle::RANDOM_RANGE)),
+        need: Need::Choice(&particle::LIFESPAN_MODE, &[particle::RANDOM_RANGE]),
         help: "write `lifespanMode: randomRange`",
     },
     Dependency {
         rows: &[&n_particle::LIFESPAN_PP.row],
-        need: Need::Choice(&particle::LIFESPAN_MODE, Some(particle::LIFESPAN_PP_ONLY)),
+        need: Need::Choice(&particle::LIFESPAN_MODE, &[particle::LIFESPAN_PP_ONLY]),
         help: "write `lifespanMode: lifespanPPOnly`",
     },
     Dependency {
         rows: &[&n_particle::ROTATION_FRICTION.row, &n_particle::ROTATION_DAMP.row],
-        need: Need::On(&n_particle::COMPUTE_ROTATION),
+        need: Need::On(&[&n_particle::COMPUTE_ROTATION]),
         help: "write `computeRotation: true`",
     },
     Dependency {
@@ -223,7 +219,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
             &n_particle::REST_DENSITY.row,
             &n_particle::RADIUS_SCALE_SPH.row,
         ],
-        need: Need::On(&n_particle::ENABLE_SPH),
+        need: Need::On(&[&n_particle::ENABLE_SPH]),
         help: "write `enableSPH: true`",
     },
     Dependency {
@@ -259,7 +255,7 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     Dependency {
         rows: &[&field::MAX_DISTANCE.row, &field::FALLOFF_CURVE.row, &radial_field::RADIAL_TYPE.row],
-        need: Need::On(&field::USE_MAX_DISTANCE),
+        need: Need::On(&[&field::USE_MAX_DISTANCE]),
         help: "write `useMaxDistance: true`",
     },
     Dependency {
@@ -269,17 +265,17 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
             &field::VOLUME_SWEEP.row,
             &field::SECTION_RADIUS.row,
         ],
-        need: Need::Choice(&field::VOLUME_SHAPE, None),
+        need: Need::Choice(&field::VOLUME_SHAPE, &[]),
         help: "give `volumeShape`",
     },
     Dependency {
         rows: &[&air_field::SPREAD.row],
-        need: Need::On(&air_field::ENABLE_SPREAD),
+        need: Need::On(&[&air_field::ENABLE_SPREAD]),
         help: "write `enableSpread: true`",
     },
     Dependency {
         rows: &[&drag_field::DIRECTION.row],
-        need: Need::On(&drag_field::USE_DIRECTION),
+        need: Need::On(&[&drag_field::USE_DIRECTION]),
         help: "write `useDirection: true`",
     },
     Dependency {
@@ -295,37 +291,37 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
             &point_emitter::RANDOM_DIRECTION.row,
             &point_emitter::DIRECTIONAL_SPEED.row,
         ],
-        need: Need::Choice(&point_emitter::EMITTER_TYPE, Some(VOLUME)),
+        need: Need::Choice(&point_emitter::EMITTER_TYPE, &[VOLUME]),
         help: "write `emitterType: volume`",
     },
     Dependency {
         rows: &[&point_emitter::SECTION_RADIUS.row],
-        need: Need::Choice(&point_emitter::VOLUME_SHAPE, Some(TORUS)),
+        need: Need::Choice(&point_emitter::VOLUME_SHAPE, &[TORUS]),
         help: "write `volumeShape: torus`",
     },
     Dependency {
         rows: &[&point_emitter::VOLUME_SWEEP.row],
-        need: Need::Choice(&point_emitter::VOLUME_SHAPE, None),
+        need: Need::Choice(&point_emitter::VOLUME_SHAPE, &[]),
         help: "a cube has no sweep: write `volumeShape: cylinder` or another round one",
     },
     Dependency {
         rows: &[&point_emitter::SPREAD.row],
-        need: Need::Choice(&point_emitter::EMITTER_TYPE, Some(DIRECTIONAL)),
+        need: Need::Choice(&point_emitter::EMITTER_TYPE, &[DIRECTIONAL]),
         help: "write `emitterType: directional`",
     },
     Dependency {
         rows: &[&point_emitter::NORMAL_SPEED.row, &point_emitter::TANGENT_SPEED.row],
-        need: Need::OneOf(&point_emitter::EMITTER_TYPE, &[SURFACE, CURVE]),
+        need: Need::Choice(&point_emitter::EMITTER_TYPE, &[SURFACE, CURVE]),
         help: "write `emitterType: surface` or `curve`; others have `speed` and the speeds of a volume",
     },
     Dependency {
         rows: &[&point_emitter::RATE_MAP.row, &point_emitter::ENABLE_TEXTURE_RATE.row],
-        need: Need::Choice(&point_emitter::EMITTER_TYPE, Some(SURFACE)),
+        need: Need::Choice(&point_emitter::EMITTER_TYPE, &[SURFACE]),
         help: "write `emitterType: surface`",
     },
     Dependency {
         rows: &[&point_emitter::RATE_MAP.row, &point_emitter::EMIT_FROM_DARK.row],
-        need: Need::On(&point_emitter::ENABLE_TEXTURE_RATE),
+        need: Need::On(&[&point_emitter::ENABLE_TEXTURE_RATE]),
         help: "write `enableTextureRate: true`",
     },
     Dependency {
@@ -340,12 +336,12 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     Dependency {
         rows: &[&n_base::SELF_COLLISION_FLAG.row, &n_cloth::SELF_COLLIDE_WIDTH_SCALE.row],
-        need: Need::On(&n_base::SELF_COLLIDE),
+        need: Need::On(&[&n_base::SELF_COLLIDE]),
         help: "write `selfCollide: true`",
     },
     Dependency {
         rows: &[&n_base::FRICTION.row],
-        need: Need::AnyOn(&[&n_base::COLLIDE, &n_base::SELF_COLLIDE]),
+        need: Need::On(&[&n_base::COLLIDE, &n_base::SELF_COLLIDE]),
         help: "write `collide: true`",
     },
 ];

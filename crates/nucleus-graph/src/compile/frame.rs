@@ -35,9 +35,8 @@ impl Program {
         let nucleus = &self.nuclei()[nucleus];
         let moment = self.graph().at(frame);
         let place = |collider: &ColliderSource| {
-            let (placement, points) =
-                (moment.placement(collider.mesh), collider.motion.as_ref()?.at(&moment));
-            Some(points.iter().map(|point| nucleus.units.point(placement.point(*point))).collect())
+            let points = collider.motion.as_ref()?.at(&moment);
+            Some(nucleus.units.placed(&moment.placement(collider.mesh), &points))
         };
         nucleus.colliders.iter().map(place).collect()
     }
@@ -280,9 +279,7 @@ impl EvaluationInterval<'_> {
         let Some(motion) = &collider.motion else { return (Vec::new(), Vec::new()) };
         let [before, now] =
             [&self.from, &self.to].map(|moment| (moment.placement(collider.mesh), motion.at(moment)));
-        let points = |(placement, points): &(Affine, Points)| -> Vec<Vector3<f64>> {
-            points.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect()
-        };
+        let points = |(placement, points): &(Affine, Points)| self.nucleus.units.placed(placement, points);
         let start = if self.is_discontinuous { points(&before) } else { Vec::new() };
         let is_still = before == now && !self.is_discontinuous;
         (start, if is_still { Vec::new() } else { points(&now) })

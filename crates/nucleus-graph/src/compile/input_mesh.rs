@@ -80,8 +80,7 @@ impl EvaluationInterval<'_> {
         moment: &EvalContext,
     ) -> Vec<Vector3<f64>> {
         let (placement, points) = (moment.placement(followed.mesh), followed.shape.at(moment));
-        let mut points: Vec<Vector3<f64>> =
-            points.iter().map(|point| self.nucleus.units.point(placement.point(*point))).collect();
+        let mut points: Vec<Vector3<f64>> = self.nucleus.units.placed(&placement, &points);
         source.tearing.iter().for_each(|tearing| tearing.extend(&mut points));
         points
     }
@@ -162,14 +161,7 @@ impl Compiler<'_> {
     fn warn_of_moving_rest_shape(&mut self, cloth: NodeId, source: NodeId) {
         let is_fixed = self.geometry.is_fixed(self.scene, source, self.findings);
         let graph = &self.scene.graph;
-        let time = self.scene.time;
-        let size = |frame: i64| {
-            let linear = graph.at(frame as f64).placement(source).linear;
-            linear.transpose() * linear
-        };
-        let first = size(self.program.start);
-        let scales = |frame: i64| (size(frame) - first).norm() > 1e-9 * first.norm();
-        if is_fixed && !(self.program.start..=time.end).any(scales) {
+        if is_fixed && !graph.changes_size(source) {
             return;
         }
         let [name, source] = [cloth, source].map(|id| graph.node(id).name());

@@ -7,6 +7,7 @@
 use nalgebra::Vector3;
 use nucleus_core::Surface;
 
+use crate::animation::Affine;
 use crate::attributes::{Choice, nucleus};
 use crate::diagnostic::Findings;
 use crate::graph::{NodeId, Setting};
@@ -35,6 +36,11 @@ impl Units {
     /// A position in metres.
     pub(super) fn point(self, units: Vector3<f64>) -> Vector3<f64> {
         units * self.metres_per_unit
+    }
+
+    /// The points of a placed mesh in metres.
+    pub(super) fn placed(self, placement: &Affine, points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+        points.iter().map(|point| self.point(placement.point(*point))).collect()
     }
 
     /// A position in scene units.

@@ -99,6 +99,11 @@ impl Graph {
                 || self.changes(node, &transform::SCALE)
         })
     }
+
+    /// Whether the size or the form of a node in the world changes over time, by its own scale or that of an ancestor.
+    pub fn changes_size(&self, node: NodeId) -> bool {
+        self.self_and_ancestors(node).any(|node| self.changes(node, &transform::SCALE))
+    }
 }
 
 impl<'g> EvalContext<'g> {

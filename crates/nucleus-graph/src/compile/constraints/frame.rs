@@ -236,7 +236,7 @@ impl EvaluationInterval<'_> {
                         Some(motion) => {
                             let placement = self.from.placement(own.mesh);
                             let points = motion.at(&self.from);
-                            points.iter().map(|point| units.point(placement.point(*point))).collect()
+                            units.placed(&placement, &points)
                         }
                     };
                 }
