@@ -6,7 +6,7 @@ use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::first_frame_warnings;
 use nucleus_graph::scene::read_scene_text;
 
-use super::scenes::{after, of_nodes, program};
+use super::scenes::{after, of_nodes, png, program};
 
 /// Where the points of an object are after some frames, in scene units.
 fn places(program: &Program, frames: usize, object: &str) -> Vec<[f32; 3]> {
@@ -437,11 +437,7 @@ fn expressions_at_birth_give_particles_of_two_emitters_different_random_numbers(
 #[test]
 fn the_number_of_a_particle_at_birth_is_that_of_its_draw_where_a_rate_map_leaves_others_out() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.write_header().expect("a header").write_image_data(&[0, 255]).expect("pixels");
-    std::fs::write(folder.path().join("rate.png"), bytes).expect("written");
+    std::fs::write(folder.path().join("rate.png"), png(2, &[0, 255])).expect("written");
     let nodes = r#""n": nucleus(), "q": nParticle(creationExpression: "lifespan = id"), "p": polyPlane(),
         "e": pointEmitter(target: "q", emitterType: surface, parent: "p", rate: 2400, enableTextureRate: true,
         rateMap: texture("rate.png"))"#;

@@ -7,7 +7,7 @@ use nucleus_core::Birth;
 use nucleus_graph::compile::compile;
 use nucleus_graph::scene::read_scene_text;
 
-use super::scenes::{of_nodes, program};
+use super::scenes::{of_nodes, png, program};
 
 /// Births of the first frame, in scene units.
 fn births(emitter: &str) -> Vec<Birth> {
@@ -57,11 +57,7 @@ fn the_rate_follows_the_speed_of_the_emitter() {
 #[test]
 fn a_rate_map_emits_where_the_texture_is_white_or_dark() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.write_header().expect("a header").write_image_data(&[0, 255]).expect("pixels");
-    fs::write(folder.path().join("rate.png"), bytes).expect("written");
+    fs::write(folder.path().join("rate.png"), png(2, &[0, 255])).expect("written");
     let mean = |dark: bool| {
         let nodes = format!(
             r#""n": nucleus(), "q": nParticle(), "p": polyPlane(width: 2, height: 2, subdivisions: (16, 1)),
@@ -93,11 +89,7 @@ fn a_rate_map_is_read_between_the_points_of_the_mesh() {
         x.hypot(y) <= 0.25 * f64::from(size)
     };
     let pixels: Vec<u8> = (0..size * size).map(|k| if is_white(k) { 255 } else { 0 }).collect();
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size as u32, size as u32);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.write_header().expect("a header").write_image_data(&pixels).expect("pixels");
-    fs::write(folder.path().join("disc.png"), bytes).expect("written");
+    fs::write(folder.path().join("disc.png"), png(size as u32, &pixels)).expect("written");
     let share = std::f64::consts::PI / 16.0;
     for (quads, dark) in [(1, false), (4, false), (40, false), (1, true)] {
         let nodes = format!(
@@ -121,12 +113,8 @@ fn a_rate_map_is_read_between_the_points_of_the_mesh() {
 #[test]
 fn a_rate_map_follows_a_seam_of_the_texture_coordinates() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 64, 1);
-    encoder.set_color(png::ColorType::Grayscale);
     let pixels: Vec<u8> = (0..64).map(|column| if (16..48).contains(&column) { 255 } else { 0 }).collect();
-    encoder.write_header().expect("a header").write_image_data(&pixels).expect("pixels");
-    fs::write(folder.path().join("rate.png"), bytes).expect("written");
+    fs::write(folder.path().join("rate.png"), png(64, &pixels)).expect("written");
     // Two quads side by side: the left one is black (u from 0 to 0.2), the right one white (from 0.4 to 0.6).
     let mesh = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 0 1\nv 1 0 1\nv 2 0 1\n\
         vt 0 0\nvt 0.2 0\nvt 0.2 1\nvt 0 1\nvt 0.4 0\nvt 0.6 0\nvt 0.6 1\nvt 0.4 1\n\

@@ -8,7 +8,7 @@ use nucleus_graph::compile::compile;
 use nucleus_graph::scene::{Diagnostic, format_scene, read_scene_text};
 use proptest::prelude::*;
 
-use super::scenes::{after, of_nodes, program};
+use super::scenes::{after, of_nodes, png, program};
 
 /// A hanging sheet of 5 by 5 points, and a cloth with these fields.
 fn hanging(cloth: &str) -> String {
@@ -281,16 +281,6 @@ fn expressions_have_the_position_and_coordinates_of_a_point() {
     assert_eq!(masses("z + y + 2")[..6], [3.0, 3.0, 3.0, 3.0, 3.0, 2.5]);
     assert_eq!(masses("1 + u + 10 * v")[..6], [1.0, 1.25, 1.5, 1.75, 2.0, 3.5]);
     assert_eq!(masses("1 + i / n")[24], 1.0 + 24.0 / 25.0);
-}
-
-/// An 8-bit grey PNG.
-fn png(columns: u32, pixels: &[u8]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, columns, pixels.len() as u32 / columns);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header().expect("a header").write_image_data(pixels).expect("a picture");
-    bytes
 }
 
 #[test]

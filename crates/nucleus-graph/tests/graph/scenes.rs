@@ -25,6 +25,16 @@ pub fn program(text: &str) -> Program {
     compile(&scene(text)).unwrap_or_else(|diagnostics| panic!("{text}\n{diagnostics:#?}"))
 }
 
+/// An 8-bit grey PNG.
+pub fn png(columns: u32, pixels: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, columns, pixels.len() as u32 / columns);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header().expect("a header").write_image_data(pixels).expect("a picture");
+    bytes
+}
+
 /// The positions of the points of an object after some frames, as bits.
 pub fn after(program: &Program, frames: usize, object: &str) -> Vec<[u32; 3]> {
     let mut run = Simulation::<f32>::new(program, 1);
