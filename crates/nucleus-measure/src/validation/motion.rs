@@ -18,8 +18,7 @@ pub const CASES: &[Case] = &[
             then below the start. A time step h moves a point by its velocity and by gravity, and projects it back onto the \
             circle: an angle δ of the step before becomes δ - δ³ - δ h² g cos θ / L, besides what gravity adds along the circle. \
             The energy per mass falls by h ω² (ω² L + g cos θ) L in a second, h ω² L times the tension. This is of first order \
-            in the time step, as with implicit Euler; the reference integrates it over the swings. Four times the evaluations \
-            leave a quarter of the loss.",
+            in the time step, as with implicit Euler; the reference integrates it over the swings.",
         known_failure: None,
         run: pendulum_loss,
     },
