@@ -165,7 +165,7 @@ pub fn share_per_step<R: Real>(grip: R, h: R) -> R {
 }
 
 /// Gap above the thickness up to which a contact is touching, as a share of the thickness.
-const TOUCHING_GAP: f64 = 1e-3;
+pub const TOUCHING_GAP: f64 = 1e-3;
 
 /// Restitution at a surface in one step.
 #[derive(Debug, Clone, Copy)]

@@ -16,6 +16,7 @@ use crate::contact::cloth::search::{ClothSearch, SearchInput};
 use crate::contact::cloth::swept_points::{ElementPoints, PairPoints, ShiftedCloth};
 use crate::contact::material::{ContactMaterial, MIN_THICKNESS};
 use crate::contact::narrow_phase::shortest_line;
+use crate::contact::response::TOUCHING_GAP;
 use crate::math::kernel::{self, Kernel};
 use crate::math::{Lanes, Real, add, dot, sub};
 
@@ -109,7 +110,7 @@ impl<'a, R: Real> ClothPair<'a, R> {
 
     /// The contact distance in metres of two elements that coincide at rest or were welded, and have been released: their
     /// distance at the start of the step, so that they can part and not pass. Zero where they touch: what intersects is
-    /// untangled.
+    /// untangled, and what slides along each other in one plane has no normal.
     #[cold]
     fn released_distance<const N: usize, const M: usize>(&self, (ours, theirs): ElementPoints<N, M>) -> f32 {
         let SearchInput { filter, anchors, displacement: [start, _], .. } = self.search.input;
@@ -118,7 +119,8 @@ impl<'a, R: Real> ClothPair<'a, R> {
         }
         let place = |point: u32| add(anchors[point as usize], start[point as usize].xyz().map(R::to_f64));
         let (_, _, distance) = shortest_line((ours.map(place), theirs.map(place)));
-        let is_apart = distance > MIN_THICKNESS * CERTIFIED_GAP;
+        let touching = f64::from(self.thickness_and_range[0]) * TOUCHING_GAP;
+        let is_apart = distance > touching.max(MIN_THICKNESS * CERTIFIED_GAP);
         if is_apart { distance.max(MIN_THICKNESS) as f32 } else { 0.0 }
     }
 
