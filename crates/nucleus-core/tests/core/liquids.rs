@@ -78,7 +78,7 @@ pub fn frictionless(count: usize) -> Vec<ColliderFrame> {
     vec![ColliderFrame { collide: true, ..ColliderFrame::default() }; count]
 }
 
-fn places(solver: &impl StateView, count: usize) -> Vec<Vec3> {
+pub fn places(solver: &impl StateView, count: usize) -> Vec<Vec3> {
     (0..count).map(|point| solver.point(WATER, point)).collect()
 }
 

@@ -8,6 +8,7 @@ mod classic;
 mod collision;
 mod contact_locality;
 mod contact_response;
+mod crowded_liquids;
 mod driven_liquids;
 mod every_number;
 mod features;

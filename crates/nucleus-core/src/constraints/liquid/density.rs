@@ -23,6 +23,9 @@ use super::walls::Walls;
 const MAX_ITERATIONS: u32 = 100;
 /// Mean excess of density at which the solution is accepted.
 const TOLERANCE: f32 = 2e-4;
+/// Least diagonal: that of a particle at rest is about 0.7. What a particle lacks is compliance, as ε in Macklin & Müller (eq. 11):
+/// particles in one place have no gradient, and a pressure without bound threw them off at the first wall.
+const LEAST_DIAGONAL: f32 = 0.05;
 /// Largest eigenvalue of the preconditioned system that is taken for granted. It grows where a step shows a larger one.
 const START_EIGENVALUE: f32 = 2.0;
 
@@ -36,6 +39,8 @@ pub struct Density {
     ahead: Vec<f32>,
     next: Vec<f32>,
     diagonal: Vec<f32>,
+    /// α of each particle.
+    compliances: Vec<f32>,
     /// Where the last gradient was taken, and the gradient.
     last: Vec<[f32; 2]>,
     sums: Vec<Sums>,
@@ -71,7 +76,7 @@ impl Density {
             self.displace(neighbours, loads, pool);
             walls.displace(neighbours.pushes(&self.ahead));
             let next = (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) / 2.0;
-            let step = Step { length: 1.0 / largest, look: (momentum - 1.0) / next, compliance };
+            let step = Step { length: 1.0 / largest, look: (momentum - 1.0) / next };
             let sums = self.descend(neighbours, loads, walls, step, pool);
             let mean = sums.excess / loads.len().max(1) as f32;
             iterations += 1;
@@ -105,8 +110,13 @@ impl Density {
         self.last[at][1]
     }
 
+    /// Excess of a particle, in the sorted order, that stays because the liquid yields.
+    pub fn yielded(&self, at: usize) -> f32 {
+        self.compliances[at] * self.lambda[at]
+    }
+
     fn resize(&mut self, count: usize, chunks: usize) {
-        for column in [&mut self.ahead, &mut self.next, &mut self.diagonal] {
+        for column in [&mut self.ahead, &mut self.next, &mut self.diagonal, &mut self.compliances] {
             column.clear();
             column.resize(count, 0.0);
         }
@@ -127,7 +137,8 @@ impl Density {
         compliance: f32,
         pool: &ThreadPool,
     ) {
-        let diagonal = DisjointSlice::new(&mut self.diagonal);
+        let [diagonal, compliances] =
+            [&mut self.diagonal, &mut self.compliances].map(|column| DisjointSlice::new(column));
         let all_free = loads.iter().all(|load| load.inverse_mass == 1.0);
         let mobility = |pair: &Pair| {
             let [x, y, z] = pair.gradient();
@@ -137,8 +148,8 @@ impl Density {
             let range = chunk_range(chunk, loads.len());
             // SAFETY: chunks do not overlap.
             #[allow(unsafe_code)]
-            let out = unsafe { diagonal.run(range.clone()) };
-            for (k, out) in out.iter_mut().enumerate() {
+            let (out, compliances) = unsafe { (diagonal.run(range.clone()), compliances.run(range.clone())) };
+            for (k, (out, yields)) in out.iter_mut().zip(compliances).enumerate() {
                 let at = range.start as usize + k;
                 let own = neighbours.sum(at);
                 let own = loads[at].inverse_mass * (own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
@@ -146,7 +157,9 @@ impl Density {
                     true => neighbours.squares[at],
                     false => neighbours.of(chunk, k).iter().map(mobility).sum(),
                 };
-                *out = own + others + walls.mobility(neighbours.walls_of(chunk, k)) + compliance;
+                let mobility = own + others + walls.mobility(neighbours.walls_of(chunk, k));
+                *yields = compliance + (LEAST_DIAGONAL - mobility).max(0.0);
+                *out = mobility + *yields;
             }
         });
     }
@@ -179,7 +192,7 @@ impl Density {
         step: Step,
         pool: &ThreadPool,
     ) -> Sums {
-        let Self { lambda, moved, ahead, next, diagonal, sums, last } = self;
+        let Self { lambda, moved, ahead, next, diagonal, compliances, sums, last } = self;
         let [next, ahead] = [next, ahead].map(|column| DisjointSlice::new(column));
         let (last, sums_of) = (DisjointSlice::new(last), DisjointSlice::new(sums));
         pool.parallel_for(loads.len().div_ceil(CHUNK as usize), |chunk| {
@@ -193,7 +206,8 @@ impl Density {
             let mut sums = Sums::default();
             let rows = range.start as usize..range.end as usize;
             let (own_moved, own_sums) = (&moved[rows.clone()], &neighbours.sums[rows.clone()]);
-            let (loads, diagonal, lambda) = (&loads[rows.clone()], &diagonal[rows.clone()], &lambda[rows]);
+            let (loads, diagonal) = (&loads[rows.clone()], &diagonal[rows.clone()]);
+            let (compliances, lambda) = (&compliances[rows.clone()], &lambda[rows]);
             let walls_move = !walls.corners().is_empty();
             let mut others = [[0.0; 4]; CHUNK as usize];
             neighbours.chunks[chunk].sum_pairs(|other| moved[other], &mut others);
@@ -204,8 +218,8 @@ impl Density {
                 if walls_move {
                     change -= walls.change(neighbours.walls_of(chunk, k));
                 }
-                let excess = loads[k].excess + change - step.compliance * ahead[k];
-                let weight = diagonal[k].max(1e-12);
+                let excess = loads[k].excess + change - compliances[k] * ahead[k];
+                let weight = diagonal[k];
                 let stepped = (ahead[k] + step.length * excess / weight).max(0.0);
                 let travel = ahead[k] - last[k][0];
                 sums.excess += excess.max(0.0);
@@ -228,7 +242,6 @@ struct Step {
     length: f32,
     /// Share of the step that the next one looks ahead.
     look: f32,
-    compliance: f32,
 }
 
 /// Sums over all particles.

@@ -312,7 +312,7 @@ impl LiquidSolver {
             let left = &mut excess.left[particle as usize];
             pressure[particle as usize] = density.lambda[at] / (h * h) as f32;
             *left += density.left(at);
-            sum += f64::from((*left + compliance * density.lambda[at]).max(0.0));
+            sum += f64::from((*left + density.yielded(at)).max(0.0));
         }
         for corner in walls.corners().iter().filter(|corner| corner.moved != [0.0; 3]) {
             let row = &mut displacement[corner.row as usize];
