@@ -203,6 +203,26 @@ fn a_rotating_emitter_turns_its_direction_within_a_frame() {
     }
 }
 
+// Particles that follow each other along one line stayed on it, and stood on each other to far above the emitter.
+#[test]
+fn what_an_emitter_pours_straight_down_spreads_on_the_ground() {
+    for kind in ["enableSPH: true, pointMass: 0.00026", "pointMass: 0.001, friction: 0"] {
+        let program = program_of(&format!(
+            r#""n": nucleus(spaceScale: 0.01, usePlane: true), "p": nParticle(drag: 0, radius: 0.5, {kind}),
+               "e": pointEmitter(target: "p", emitterType: directional, direction: (0, -1, 0), translateY: 10,
+                   rate: 200, speed: 50)"#
+        ));
+        let mut simulation = Simulation::<f32>::new(&program, 1);
+        (0..24).for_each(|_| _ = simulation.advance(&mut ()));
+        let mut places = Vec::new();
+        simulation.state().positions(DROPS, 100.0, &mut places);
+        let highest = places.iter().map(|place| place[1]).fold(0.0, f32::max);
+        let widest = places.iter().map(|place| place[0].hypot(place[2])).fold(0.0, f32::max);
+        assert!(places.len() > 150, "{kind}: {}", places.len());
+        assert!(highest < 12.0 && widest > 4.0, "{kind}: {highest} high, {widest} wide");
+    }
+}
+
 /// The errors of compiling a scene.
 fn errors(nodes: &str) -> String {
     let text = format!("Scene(time: (start: 1, end: 24, fps: 24), nodes: {{ {nodes} }})");

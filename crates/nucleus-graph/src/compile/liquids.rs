@@ -19,6 +19,9 @@ const HONEY: f64 = 0.01;
 const CENTIMETRE_DROPS: f64 = 1e-3;
 /// Distance of particles from a wall where `collideWidthScale` is not given, in rest distances.
 const WALL_DISTANCE: f64 = 0.5;
+/// Density of water in kg/m³, and that beyond which a liquid is warned of: no metal has it.
+const WATER: f64 = 1000.0;
+const MAX_DENSITY: f64 = 25_000.0;
 /// Contact distance beyond which a liquid is warned of, as a multiple of the natural one.
 const MAX_DISTANCE: f64 = 1.25;
 
@@ -119,6 +122,22 @@ impl Compiler<'_> {
             self.findings.warning(&place, message).help(help);
         }
         Some(())
+    }
+
+    /// Warns of a liquid that is heavier than any metal, at the first frame. `kilograms` is the mass of a particle.
+    pub(super) fn warn_of_mass(&mut self, node: NodeId, kilograms: f64) {
+        if !is_liquid(&self.start, node) {
+            return;
+        }
+        let volume = self.program.units.length(rest_distance(&self.start, node)).powi(3);
+        if kilograms <= MAX_DENSITY * volume {
+            return;
+        }
+        let name = self.scene.graph.node(node).name();
+        let message = format!("the liquid `{name}` weighs {:.0} kg/m³, and water 1000", kilograms / volume);
+        let help =
+            format!("write `pointMass: {:.2e}` for water: a particle stands for that volume", WATER * volume);
+        self.findings.warning(&self.place(node, &n_particle::POINT_MASS.row), message).help(help);
     }
 
     /// Warns of a liquid that the air lets fall at a lower terminal speed than a fall over its own height gives, at the first

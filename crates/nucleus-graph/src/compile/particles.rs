@@ -49,7 +49,9 @@ impl Compiler<'_> {
             true => mass * points as f64,
             false => masses.iter().sum(),
         };
-        self.warn_of_drag(id, &places, if points > 0 { kilograms / points as f64 } else { mass });
+        let of_each = if points > 0 { kilograms / points as f64 } else { mass };
+        self.warn_of_drag(id, &places, of_each);
+        self.warn_of_mass(id, of_each);
         let warp = Vec::new();
         let mass_of_each = Mass::PerPoint(mass);
         let split_off = Vec::new();

@@ -42,3 +42,17 @@ fn a_liquid_that_the_air_stops_within_its_own_height_is_warned_of() {
     // A fall over a metre, the liquid's height at most, gives 4.4 m/s: at a mass of 0.108 kg drag has its weight there.
     assert_eq!(of("", ", enableSPH: true, pointMass: 0.11"), [""; 0]);
 }
+
+#[test]
+fn a_liquid_that_is_heavier_than_any_metal_is_warned_of() {
+    let of = |mass: &str| {
+        let nodes = format!(
+            r#""n": nucleus(spaceScale: 0.01), "q": nParticle(enableSPH: true, drag: 0, radius: 0.5, maximumCorner: (1, 1, 1){mass})"#
+        );
+        warnings(&of_nodes(&nodes, ""))
+    };
+    // A ball of 0.5 cm has 0.52 cm³, and two overlap each point of the liquid: 0.26 g of water.
+    assert_eq!(of(", pointMass: 0.00026"), [""; 0]);
+    let [found] = &of("")[..] else { panic!("one warning") };
+    assert!(found.contains("the liquid `q` weighs 38"), "{found}");
+}

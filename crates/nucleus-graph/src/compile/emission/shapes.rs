@@ -63,6 +63,10 @@ impl Launch {
     }
 }
 
+/// Least angle that particles fan out by, in degrees: balls and liquids that follow each other along one line could never leave
+/// it, and would stack up without end.
+const MIN_HALF_ANGLE: f64 = 5e-3;
+
 /// An omni or directional emitter.
 pub(super) struct PointShape {
     /// `None` for all directions.
@@ -81,7 +85,11 @@ impl PointShape {
         let least = get(&point_emitter::MIN_DISTANCE).max(0.0);
         Self {
             axis: (!is_omni).then_some(axis),
-            half_angle: if is_omni { 180.0 } else { 90.0 * get(&point_emitter::SPREAD) },
+            half_angle: if is_omni {
+                180.0
+            } else {
+                (90.0 * get(&point_emitter::SPREAD)).max(MIN_HALF_ANGLE)
+            },
             distance: [least, get(&point_emitter::MAX_DISTANCE).max(least)],
             speed: Speed::new(emitter, moment),
         }
