@@ -116,7 +116,7 @@ impl<R: Real> RunLoop<R> {
             flat,
         };
         let (outcome, text, report) = (summary.outcome(), summary.as_text()?, summary.as_json());
-        Ok(Finished { outcome, text, report })
+        Ok(Finished { outcome, text, warnings: summary.warnings(), report })
     }
 }
 
@@ -124,6 +124,8 @@ impl<R: Real> RunLoop<R> {
 pub struct Finished {
     pub outcome: Outcome,
     pub text: String,
+    /// Those of its lines that warn of the result.
+    pub warnings: Vec<String>,
     pub report: Value,
 }
 
@@ -132,7 +134,9 @@ impl Finished {
     pub fn print(self, json: bool) -> Outcome {
         match json {
             true => output::report_json(&self.report),
-            false if self.outcome == Outcome::Success => output::report(&self.text),
+            false if output::is_quiet() && self.outcome == Outcome::Success => {
+                self.warnings.iter().for_each(|line| output::report_always(&format!("{line}\n")));
+            }
             false => output::report_always(&self.text),
         }
         self.outcome

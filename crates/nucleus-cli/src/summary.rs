@@ -78,7 +78,8 @@ impl Summary<'_> {
         warnings::unresolved_contact(&self.statistics, self.checks, self.audit.is_some())
     }
 
-    fn warnings(&self) -> Vec<String> {
+    /// Warnings of the result of a run that succeeded.
+    pub fn warnings(&self) -> Vec<String> {
         let all = [warnings::large_strain, warnings::large_compression];
         all.into_iter().filter_map(|warning| warning(&self.statistics, self.checks)).collect()
     }

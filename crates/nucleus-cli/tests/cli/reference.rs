@@ -50,6 +50,23 @@ fn a_quiet_success_prints_nothing_and_a_quiet_failure_prints_its_report() {
 }
 
 #[test]
+fn a_quiet_success_prints_the_warnings_of_its_result() {
+    let folder = folder();
+    // Each point carries 250 g on links that two sweeps hold.
+    let text = r#"Scene(time: (start: 1, end: 6, fps: 24), nodes: {
+        "n": nucleus(evaluations: 24), "m": polyPlane(subdivisions: (4, 60), rotateX: 90),
+        "c": nCloth(inputMesh: "m", pointMass: 60), "pin": dynamicConstraint(components: ["c.where(z < -0.49)"])})"#;
+    fs::write(folder.path().join("a.ron"), text).expect("written");
+    let found = |arguments: &[&str]| stdout(&nucleus(folder.path(), arguments));
+    let all = found(&["run", "a.ron", "--record", "none"]);
+    let quiet = found(&["run", "a.ron", "--record", "none", "-q"]);
+    let warnings: String =
+        all.lines().filter(|line| line.starts_with("warning: ")).map(|line| format!("{line}\n")).collect();
+    assert!(warnings.contains("stretched"), "{all}");
+    assert_eq!(quiet, warnings);
+}
+
+#[test]
 fn colours_are_printed_where_they_are_wanted() {
     let folder = folder();
     fs::write(folder.path().join("a.ron"), "Scene(nodes: {})").expect("written");
