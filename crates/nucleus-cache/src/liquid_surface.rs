@@ -16,9 +16,11 @@
 //! |---|---|
 //! | the signed distance | `grid.rs` |
 //! | which edges of a cell one sheet crosses | `cell.rs` |
+//! | pieces without a particle inside | `pieces.rs` |
 
 mod cell;
 mod grid;
+mod pieces;
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek};
@@ -121,6 +123,7 @@ impl LiquidSurface {
         let mut surface = net.surface;
         surface.bulge();
         surface.positions.iter_mut().flatten().for_each(|x| *x *= grid.width);
+        surface.remove_empty_pieces(particles, spacing);
         surface
     }
 
