@@ -31,19 +31,49 @@ fn resumed(folder: &Path, arguments: &[&str]) -> Vec<u8> {
     fs::read(folder.join("x.mcap")).unwrap()
 }
 
+/// The end of the start frame: that of the first chunk, a record with opcode 6. A record is an opcode, its length in eight
+/// bytes, and so many bytes; the first one follows the eight bytes of the magic.
+fn end_of_start(cache: &[u8]) -> usize {
+    let mut at = 8;
+    loop {
+        let length = u64::from_le_bytes(cache[at + 1..at + 9].try_into().unwrap());
+        let is_chunk = cache[at] == 6;
+        at += 9 + length as usize;
+        if is_chunk {
+            return at;
+        }
+    }
+}
+
 #[test]
-fn a_cache_that_is_cut_off_anywhere_resumes_to_the_same_bytes() {
+fn a_cache_that_is_cut_off_anywhere_behind_its_start_resumes_to_the_same_bytes() {
     let folder = folder();
     let whole = whole(folder.path());
+    let start = end_of_start(&whole);
     let part = folder.path().join("x.mcap.part");
     // The leftover of a resumed run that was killed is replaced.
     fs::write(folder.path().join("x.mcap.resuming"), "half a cache").unwrap();
-    for cut in (1..20).map(|k| whole.len() * k / 20) {
+    for cut in (0..20).map(|k| start + (whole.len() - start) * k / 20) {
         fs::write(&part, &whole[..cut]).unwrap();
         let threads = if cut % 2 == 0 { "1" } else { "2" };
         assert!(resumed(folder.path(), &["--threads", threads]) == whole, "cut off after {cut} bytes");
         assert!(!part.exists() && !folder.path().join("x.mcap.resuming").exists());
         fs::remove_file(folder.path().join("x.mcap")).unwrap();
+    }
+}
+
+#[test]
+fn a_cache_that_is_cut_off_before_its_start_says_that_the_run_must_start_again() {
+    let folder = folder();
+    let whole = whole(folder.path());
+    let start = end_of_start(&whole);
+    let part = folder.path().join("x.mcap.part");
+    for cut in (1..8).map(|k| start * k / 8).chain([start - 1]) {
+        fs::write(&part, &whole[..cut]).unwrap();
+        let output = resume(folder.path(), &[]);
+        assert_eq!(output.status.code(), Some(2), "cut off after {cut} of {start} bytes");
+        assert!(stderr(&output).contains("start the run again with `nucleus run`"), "{}", stderr(&output));
+        assert!(fs::read(&part).unwrap() == whole[..cut] && !folder.path().join("x.mcap").exists());
     }
 }
 

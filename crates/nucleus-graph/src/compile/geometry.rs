@@ -13,8 +13,8 @@ use crate::files;
 use crate::graph::{Graph, Node, NodeId};
 use crate::memory::{Budget, Cost, Size};
 use crate::mesh::{
-    MeshFormat, ObjError, Primitive, PrimitiveError, drop_degenerate_faces, poly_plane_uvs, read_obj_uvs,
-    rotation_to_axis,
+    FileMesh, MeshFormat, ObjError, Primitive, PrimitiveError, drop_degenerate_faces, poly_plane_uvs,
+    read_obj_uvs, rotation_to_axis,
 };
 use crate::scene::document::{Scene, Source};
 
@@ -90,6 +90,10 @@ impl Geometry {
         if let Some(uvs) = plane_uvs(own) {
             return Ok(Some(uvs.into_iter().map(Some).collect()));
         }
+        if let Some((primitive, _)) = primitive(own) {
+            let mesh = primitive.surface().map(|surface| FileMesh { surface, uvs: primitive.corner_uvs() });
+            return Ok(mesh.ok().and_then(|mesh| mesh.uvs_of_points()));
+        }
         if own.node_type() != &mesh::MESH {
             return Ok(None);
         }
@@ -164,7 +168,7 @@ fn make(scene: &Scene, node: &Node, budget: &mut Budget, findings: &mut Findings
 }
 
 /// The primitive of a node and the direction of its y axis, if it is one.
-fn primitive(node: &Node) -> Option<(Primitive, [f64; 3])> {
+pub(super) fn primitive(node: &Node) -> Option<(Primitive, [f64; 3])> {
     let node_type = node.node_type();
     Some(if node_type == &poly_plane::POLY_PLANE {
         use poly_plane::{AXIS, HEIGHT, SUBDIVISIONS_HEIGHT, SUBDIVISIONS_WIDTH, WIDTH};

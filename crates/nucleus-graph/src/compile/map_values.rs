@@ -181,7 +181,7 @@ impl Compiler<'_> {
         let message = format!("`{source}` of `{name}` asks for texture coordinates: {missing}");
         let place = self.scene.source.place(&format!("{name}.{source}"));
         let error = self.findings.error(&place, message);
-        error.help("a polyPlane has them, and an OBJ file with `vt` lines and faces like `7/2`");
+        error.help("a primitive has them, and an OBJ file with `vt` lines and faces like `7/2`");
         None
     }
 

@@ -8,7 +8,7 @@ use crate::graph::Node;
 use crate::mesh::{CornerUvs, MeshFile, MeshFormat, read_obj_corner_uvs};
 use crate::scene::document::Scene;
 
-use super::geometry::{file_of, plane_uvs};
+use super::geometry::{file_of, plane_uvs, primitive};
 use super::mesh_files::frames_of;
 use super::program::{Object, Program};
 
@@ -55,6 +55,9 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
 pub(super) fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
     if let Some(uvs) = plane_uvs(node) {
         return Some((uvs, Vec::new()));
+    }
+    if let Some((primitive, _)) = primitive(node) {
+        return primitive.corner_uvs();
     }
     let path = scene.source.path(&file_of(scene, node)?);
     match MeshFormat::of(&path) {

@@ -80,7 +80,7 @@ impl Compiler<'_> {
         if uvs.is_none() {
             let (name, mesh) = (self.weave_name(cloth), mesh.name());
             let message = format!("`weave` of `{name}` asks for texture coordinates: `{mesh}` has none");
-            let help = "a polyPlane has them, and an OBJ file with `vt` lines and faces like `7/2`; the warp follows u";
+            let help = "a primitive has them, and an OBJ file with `vt` lines and faces like `7/2`; the warp follows u";
             let place = self.weave_place(cloth);
             self.findings.error(&place, message).help(help);
         }

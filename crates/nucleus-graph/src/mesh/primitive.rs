@@ -8,6 +8,8 @@ use nucleus_core::{Faces, Surface};
 use crate::animation::sin_cos_degrees;
 use crate::memory::Size;
 
+mod uvs;
+
 /// A primitive with its parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Primitive {

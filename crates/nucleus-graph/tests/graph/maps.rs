@@ -306,6 +306,24 @@ fn a_texture_is_sampled_at_the_texture_coordinates_of_each_point() {
 }
 
 #[test]
+fn a_texture_is_sampled_at_the_default_texture_coordinates_of_a_sphere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("scene.ron");
+    // Four pixels in a row round the sphere: the second is bright, from a fourth to half of the way round.
+    fs::write(folder.path().join("row.png"), png(4, &[51, 255, 51, 51])).expect("written");
+    let text = of_nodes(
+        r#""n": nucleus(), "m": polySphere(subdivisions: (8, 4)),
+           "c": nCloth(inputMesh: "m", massMap: texture("row.png"))"#,
+        "",
+    );
+    let (scene, _) = read_scene_text(&text, &file).expect("it reads");
+    let masses = &compile(&scene).expect("it compiles").model().cloths()[0].vertex_maps.mass.clone();
+    // A pixel has its value in its middle, at 3/8 of the way: point 3 of a ring of 8.
+    let brightest = (0..8).max_by(|a, b| masses[*a].total_cmp(&masses[*b]));
+    assert_eq!(brightest, Some(3), "{masses:?}");
+}
+
+#[test]
 fn a_mistake_in_a_map_is_reported_with_node_attribute_place_and_counts() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.ron");
@@ -428,7 +446,6 @@ fn a_mistake_in_a_map_is_reported_with_node_attribute_place_and_counts() {
             r#"mesh(file: "bare.obj")"#,
             "`massMap` of `c` asks for texture coordinates: `p` has none".to_owned(),
         ),
-        (r#"polyCube()"#, "`massMap` of `c` asks for texture coordinates: `p` has none".to_owned()),
         (
             r#"mesh(file: "torn.obj")"#,
             format!(
