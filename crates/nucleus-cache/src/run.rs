@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use nucleus_core::{ClothId, ColliderId, Faces, SubstepIndex};
 
 use crate::camera::Camera;
+use crate::face_sets::FaceSets;
 use crate::selections::SelectedPoints;
 use crate::texture_coordinates::TextureCoordinates;
 
@@ -96,6 +97,8 @@ pub struct RunInfo {
     pub cameras: Vec<Camera>,
     /// Texture coordinates of each object that has any, by object name.
     pub texture_coordinates: BTreeMap<String, TextureCoordinates>,
+    /// Groups and materials of the faces of each object that has any, by object name.
+    pub face_sets: BTreeMap<String, FaceSets>,
     /// The points that constraints name.
     pub selections: Vec<SelectedPoints>,
     /// Frames between two checkpoints; 0 records none.
@@ -147,6 +150,7 @@ impl Default for RunInfo {
             surfaces: BTreeMap::new(),
             cameras: Vec::new(),
             texture_coordinates: BTreeMap::new(),
+            face_sets: BTreeMap::new(),
             selections: Vec::new(),
             checkpoint: 0,
             packing: Packing::Fast,

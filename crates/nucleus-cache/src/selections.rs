@@ -17,7 +17,7 @@ pub struct SelectedPoints {
 const KEY: &str = "selection ";
 
 /// Selections as keys and values of a metadata record: the constraint in the first line, the object in the second, and the
-/// points in the third, with runs as their ends: `3 5:8`.
+/// points in the third.
 pub(crate) fn to_keys(all: &[SelectedPoints]) -> BTreeMap<String, String> {
     let text = |SelectedPoints { owner, object, points }: &SelectedPoints| {
         let owned = [owner, object].map(|name| name.replace('\n', " "));
@@ -33,30 +33,21 @@ pub(crate) fn from_keys(keys: &BTreeMap<String, String>) -> Vec<SelectedPoints> 
         key.strip_prefix(KEY)?;
         let mut lines = text.split('\n');
         let (owner, object) = (lines.next()?.to_owned(), lines.next()?.to_owned());
-        let mut points = Vec::new();
-        for word in lines.next()?.split(' ').filter(|word| !word.is_empty()) {
-            let (first, last) = word.split_once(':').unwrap_or((word, word));
-            let (first, last): (u32, u32) = (first.parse().ok()?, last.parse().ok()?);
-            // A damaged end must not take all memory.
-            if last.checked_sub(first)? > MAX_RUN {
-                return None;
-            }
-            points.extend(first..=last);
-        }
-        Some(SelectedPoints { owner, object, points })
+        Some(SelectedPoints { owner, object, points: from_runs(lines.next()?)? })
     };
     keys.iter().filter_map(entry).collect()
 }
 
-/// The longest run of points.
+/// The longest run.
 const MAX_RUN: u32 = 100_000_000;
 
-fn runs(points: &[u32]) -> String {
+/// Ascending numbers as text, with runs as their ends: `3 5:8`.
+pub(crate) fn runs(numbers: &[u32]) -> String {
     let mut runs: Vec<[u32; 2]> = Vec::new();
-    for &point in points {
+    for &number in numbers {
         match runs.last_mut() {
-            Some(run) if run[1].checked_add(1) == Some(point) => run[1] = point,
-            _ => runs.push([point; 2]),
+            Some(run) if run[1].checked_add(1) == Some(number) => run[1] = number,
+            _ => runs.push([number; 2]),
         }
     }
     let word = |[first, last]: &[u32; 2]| match first == last {
@@ -64,6 +55,21 @@ fn runs(points: &[u32]) -> String {
         false => format!("{first}:{last}"),
     };
     runs.iter().map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// Numbers from such a text; `None` if it is malformed.
+pub(crate) fn from_runs(text: &str) -> Option<Vec<u32>> {
+    let mut numbers = Vec::new();
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        let (first, last) = word.split_once(':').unwrap_or((word, word));
+        let (first, last): (u32, u32) = (first.parse().ok()?, last.parse().ok()?);
+        // A damaged end must not take all memory.
+        if last.checked_sub(first)? > MAX_RUN {
+            return None;
+        }
+        numbers.extend(first..=last);
+    }
+    Some(numbers)
 }
 
 #[cfg(test)]

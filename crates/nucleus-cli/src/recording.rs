@@ -6,12 +6,13 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use nucleus_cache::{
-    Camera, CameraView, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, RecordError, Recorder, RunInfo,
-    SelectedPoints, Source, SurfaceShape, TextureCoordinates, shell_word,
+    Camera, CameraView, FaceSet, FaceSets, FilmFit, ObjectInfo, ObjectKind, Packing, Plane, RecordError,
+    Recorder, RunInfo, SelectedPoints, Source, SurfaceShape, TextureCoordinates, shell_word,
 };
 use nucleus_core::{GroundPlane, Real};
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::{self, NucleusProgram, Program};
+use nucleus_graph::mesh;
 use nucleus_graph::scene::Scene;
 use nucleus_measure::result_cache::Fingerprint;
 use nucleus_measure::trade::Setting;
@@ -46,17 +47,37 @@ pub struct RecordOptions {
     pub checkpoint: u32,
     /// Further facts about the run; see [`facts`].
     pub facts: BTreeMap<String, String>,
-    /// Texture coordinates by object.
-    pub texture_coordinates: BTreeMap<String, TextureCoordinates>,
+    /// What is recorded of the meshes besides points and faces.
+    pub surface_data: SurfaceData,
 }
 
-/// The texture coordinates of the objects of a scene.
-pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String, TextureCoordinates> {
-    let of = |(name, (values, corners)): (String, compile::MeshCoordinates)| {
-        let values = values.into_iter().map(|uv| uv.map(|x| x as f32)).collect();
-        (name, TextureCoordinates { values, corners })
-    };
-    compile::texture_coordinates(scene, program).into_iter().map(of).collect()
+/// What meshes have besides points and faces, by object.
+#[derive(Debug, Clone, Default)]
+pub struct SurfaceData {
+    pub texture_coordinates: BTreeMap<String, TextureCoordinates>,
+    pub face_sets: BTreeMap<String, FaceSets>,
+}
+
+impl SurfaceData {
+    /// That of the objects of a scene.
+    pub fn of(scene: &Scene, program: &Program) -> Self {
+        let coordinates = |(name, (values, corners)): (String, compile::MeshCoordinates)| {
+            let values = values.into_iter().map(|uv| uv.map(|x| x as f32)).collect();
+            (name, TextureCoordinates { values, corners })
+        };
+        let set = |mesh::FaceSet { name, faces }| FaceSet { name, faces };
+        let sets = |(name, mesh::FaceSets { groups, materials }): (String, mesh::FaceSets)| {
+            let [groups, materials] = [groups, materials].map(|sets| sets.into_iter().map(set).collect());
+            (name, FaceSets { groups, materials })
+        };
+        Self {
+            texture_coordinates: compile::texture_coordinates(scene, program)
+                .into_iter()
+                .map(coordinates)
+                .collect(),
+            face_sets: compile::face_sets(scene, program).into_iter().map(sets).collect(),
+        }
+    }
 }
 
 /// Creates the cache of a run and records the start frame. Returns `None` if nothing is recorded.
@@ -76,7 +97,8 @@ pub fn begin<R: Real>(
         packing: if options.compact { Packing::Small } else { Packing::Fast },
         checkpoint: options.checkpoint,
         extra: options.facts,
-        texture_coordinates: options.texture_coordinates,
+        texture_coordinates: options.surface_data.texture_coordinates,
+        face_sets: options.surface_data.face_sets,
         ..of_scene(simulation, scene)?
     };
     let objects = objects(simulation);

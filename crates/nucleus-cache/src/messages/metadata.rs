@@ -1,5 +1,5 @@
 //! Metadata records of a run, each with a checksum: `nucleus.run`, `nucleus.scene`, `nucleus.cameras`,
-//! `nucleus.uvs` and `nucleus.selections`.
+//! `nucleus.uvs`, `nucleus.faces` and `nucleus.selections`.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::camera;
 use crate::error::OpenError;
 use crate::messages::attribute::{CONTACTS, LOOKS, PARTICLES, ROTATION, STRAIN};
 use crate::run::{Detail, Packing, Plane, RunInfo, SurfaceShape};
-use crate::{selections, texture_coordinates};
+use crate::{face_sets, selections, texture_coordinates};
 
 /// Format version. A reader refuses a higher one.
 const FORMAT: u32 = 1;
@@ -20,6 +20,7 @@ const SCENE: &str = "nucleus.scene";
 const CAMERAS: &str = "nucleus.cameras";
 const SELECTIONS: &str = "nucleus.selections";
 const UVS: &str = "nucleus.uvs";
+const FACES: &str = "nucleus.faces";
 const RUN: &str = "nucleus.run";
 /// Names of the further records of the run, with spaces between; a reader detects a lost record by it.
 const FURTHER_RECORDS: &str = "records";
@@ -135,7 +136,7 @@ impl RunInfo {
         [with_checksum(SCENE, scene.into()), with_checksum(RUN, run)]
     }
 
-    /// The records of the cameras, the texture coordinates and the selections, if there are any.
+    /// The records of the cameras, the texture coordinates, the groups and materials, and the selections, if there are any.
     pub(crate) fn extras_to_metadata(&self) -> impl Iterator<Item = Metadata> {
         let cameras =
             (!self.cameras.is_empty()).then(|| with_checksum(CAMERAS, camera::to_keys(&self.cameras)));
@@ -143,7 +144,9 @@ impl RunInfo {
             .then(|| with_checksum(UVS, texture_coordinates::to_keys(&self.texture_coordinates)));
         let selections = (!self.selections.is_empty())
             .then(|| with_checksum(SELECTIONS, selections::to_keys(&self.selections)));
-        cameras.into_iter().chain(uvs).chain(selections)
+        let faces =
+            (!self.face_sets.is_empty()).then(|| with_checksum(FACES, face_sets::to_keys(&self.face_sets)));
+        cameras.into_iter().chain(uvs).chain(faces).chain(selections)
     }
 
     /// The run, and the names of its records that are damaged or missing; what they hold is left out.
@@ -177,6 +180,7 @@ impl RunInfo {
         let mut scene = contents(SCENE);
         let cameras = camera::from_keys(&contents(CAMERAS));
         let texture_coordinates = texture_coordinates::from_keys(&contents(UVS));
+        let face_sets = face_sets::from_keys(&contents(FACES));
         let selections = selections::from_keys(&contents(SELECTIONS));
         let info = Self {
             scene_path: scene.remove("path").unwrap_or_default(),
@@ -200,6 +204,7 @@ impl RunInfo {
             surfaces: run.surfaces()?,
             cameras,
             texture_coordinates,
+            face_sets,
             selections,
             checkpoint: if run.0.contains_key(CHECKPOINT) { run.parse(CHECKPOINT)? } else { 0 },
             packing: run.packing(),
@@ -225,6 +230,7 @@ pub(crate) fn content_of(record: &str) -> &'static str {
         SCENE => "the text of the scene",
         CAMERAS => "the cameras",
         UVS => "the texture coordinates",
+        FACES => "the groups and materials",
         SELECTIONS => "the selections",
         _ => "a record of the run",
     }
@@ -352,6 +358,7 @@ fn plane(line: &str) -> Option<Plane> {
 mod tests {
     use super::*;
     use crate::camera::{Camera, CameraView, FilmFit};
+    use crate::face_sets::{FaceSet, FaceSets};
     use crate::selections::SelectedPoints;
     use crate::texture_coordinates::TextureCoordinates;
 
@@ -428,9 +435,12 @@ mod tests {
         let view = CameraView::default();
         let camera = Camera { name: "shot".to_owned(), fit: FilmFit::Vertical, views: vec![view; 2] };
         let coordinates = TextureCoordinates { corners: vec![0, 0, 0], values: vec![[0.5, 0.25]] };
+        let silk = FaceSet { name: "silk".to_owned(), faces: vec![0] };
+        let sets = FaceSets { materials: vec![silk], ..FaceSets::default() };
         let run = RunInfo {
             cameras: vec![camera],
             texture_coordinates: BTreeMap::from([("cloth1".to_owned(), coordinates)]),
+            face_sets: BTreeMap::from([("cloth1".to_owned(), sets)]),
             selections: vec![SelectedPoints {
                 owner: "hem".to_owned(),
                 object: "cloth1".to_owned(),
@@ -440,7 +450,7 @@ mod tests {
         };
         let records: Vec<_> = run.to_metadata().into_iter().chain(run.extras_to_metadata()).collect();
         assert_eq!(RunInfo::from_metadata(&records).unwrap(), (run, Vec::new()));
-        for at in [CAMERAS, UVS, SELECTIONS].map(|name| {
+        for at in [CAMERAS, UVS, FACES, SELECTIONS].map(|name| {
             records.iter().position(|record| record.name == name).expect("every record is written")
         }) {
             let lost = |change: fn(&mut Metadata)| {

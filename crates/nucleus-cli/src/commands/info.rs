@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use nucleus_cache::{CorruptionReport, Detail, ObjectInfo, ObjectKind, Playback, Sizes};
+use nucleus_cache::{CorruptionReport, Detail, FaceSet, ObjectInfo, ObjectKind, Playback, RunInfo, Sizes};
 use serde_json::json;
 
 use super::scene_info;
@@ -117,6 +117,13 @@ fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<String
             kind(object.kind),
             changes(cache, place)
         )?;
+        for (what, sets) in face_sets(run, object) {
+            let names: Vec<String> = sets
+                .iter()
+                .map(|set| format!("{} ({})", set.name, figures::count(set.faces.len(), "face")))
+                .collect();
+            writeln!(text, "  {what:<11} {}", names.join(", "))?;
+        }
     }
     for (topic, encoding, messages) in cache.channels() {
         let bytes = channel_bytes(sizes, topic).map(|bytes| format!(", {}", figures::bytes(bytes)));
@@ -129,6 +136,10 @@ fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<String
 /// The content of a cache as JSON.
 fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
     let run = cache.run();
+    let names = |what: &str, object: &ObjectInfo| -> Vec<&str> {
+        let all = face_sets(run, object).filter(|(kind, _)| *kind == what);
+        all.flat_map(|(_, sets)| sets).map(|set| set.name.as_str()).collect()
+    };
     let objects: Vec<_> = cache
         .objects()
         .iter()
@@ -139,6 +150,8 @@ fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
                 "kind": kind(object.kind),
                 "points": object.rest.len(),
                 "faces": object.faces.len(),
+                "groups": names("groups", object),
+                "materials": names("materials", object),
                 "size_metres": size(object, run.units_per_metre),
                 "mesh_changes": cache.mesh_changes(place).iter().map(|&at| cache.time_samples()[at].frame).collect::<Vec<_>>(),
             })
@@ -191,6 +204,16 @@ fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
         "objects": objects,
         "channels": channels,
     })
+}
+
+/// The groups and the materials of an object's faces, where it has any.
+fn face_sets<'a>(
+    run: &'a RunInfo,
+    object: &ObjectInfo,
+) -> impl Iterator<Item = (&'static str, &'a [FaceSet])> {
+    let sets = run.face_sets.get(&object.name).into_iter();
+    sets.flat_map(|sets| [("groups", sets.groups.as_slice()), ("materials", &sets.materials)])
+        .filter(|(_, sets)| !sets.is_empty())
 }
 
 /// The losses in words. Lost frames are known only once every frame has been read.

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use nucleus_cache::TextureCoordinates;
 use nucleus_core::Real;
 use nucleus_graph::Simulation;
 use nucleus_graph::compile::Program;
@@ -17,7 +16,7 @@ use crate::initial_state::InitialState;
 use crate::options::{self, Channels, FrameRange, Record, Scalar};
 use crate::output::say;
 use crate::process::Outcome;
-use crate::recording::{self, RecordOptions};
+use crate::recording::{self, RecordOptions, SurfaceData};
 use crate::run_loop::{Finished, Recording, RunLoop};
 use crate::{budget_hints, diagnostics, files, process, quality};
 
@@ -157,10 +156,10 @@ impl Run {
         }
         process::listen_for_signals()?;
         let facts = self.facts(setting, if is_changed { &read } else { &program })?;
-        let coordinates = recording::texture_coordinates(&scene, &program);
+        let surface_data = SurfaceData::of(&scene, &program);
         match self.scalar {
-            Scalar::F32 => self.simulate::<f32>(&program, (facts, coordinates), (out, &text)),
-            Scalar::F64 => self.simulate::<f64>(&program, (facts, coordinates), (out, &text)),
+            Scalar::F32 => self.simulate::<f32>(&program, (facts, surface_data), (out, &text)),
+            Scalar::F64 => self.simulate::<f64>(&program, (facts, surface_data), (out, &text)),
         }
     }
 
@@ -168,7 +167,7 @@ impl Run {
     fn simulate<R: Real>(
         self,
         program: &Program,
-        (facts, coordinates): (BTreeMap<String, String>, BTreeMap<String, TextureCoordinates>),
+        (facts, surface_data): (BTreeMap<String, String>, SurfaceData),
         (out, text): (PathBuf, &str),
     ) -> Result<Option<Finished>> {
         recording::frames(program)?;
@@ -182,7 +181,7 @@ impl Run {
             force: self.force,
             compact: self.compact,
             checkpoint: self.checkpoint,
-            texture_coordinates: coordinates,
+            surface_data,
             facts,
         };
         let recorder = recording::begin(&run.simulation, options, &out, (&self.scene, text))?;

@@ -31,6 +31,7 @@
 //! | thickness, self-collision, push-out                  | `thickness.rs`                     |
 //! | cameras                                              | `camera.rs`                        |
 //! | texture coordinates, for exports                     | `texture_coordinates.rs`           |
+//! | groups and materials of faces                        | `face_sets.rs`                     |
 //! | scene units to metres, start frames                  | `units.rs`                         |
 //!
 //! Modules use each other in one direction only: from `units.rs` up to `objects.rs`.
@@ -46,6 +47,7 @@ mod constraints;
 mod contradictions;
 mod dependencies;
 mod emission;
+mod face_sets;
 mod fields;
 mod fill;
 mod force_fields;
@@ -91,6 +93,7 @@ use program::ProgramData;
 pub(crate) use attachments::AttachmentState;
 pub use camera::{Camera, FilmFit, View};
 pub use constraints::kinds::defaults_by_type;
+pub use face_sets::face_sets;
 pub(crate) use geometry::max_points;
 pub use geometry::primitive_surface;
 pub(crate) use liquids::self_collides;

@@ -7,10 +7,10 @@ use nucleus_core::Faces;
 
 use crate::attributes::{ElementKind, Which, n_component, read_which};
 use crate::graph::NodeId;
-use crate::mesh::read_obj_groups;
 use crate::paint::{Expression, Point, Texture};
 
 use super::compiler::Compiler;
+use super::face_sets;
 use super::geometry::file_of;
 
 /// The elements of a mesh that can be selected.
@@ -274,24 +274,22 @@ impl Compiler<'_> {
         let mesh = self.scene.graph.node(of.mesh);
         let file = file_of(self.scene, self.scene.graph.node(of.mesh));
         let file = file.ok_or_else(|| format!("`{}` is not read from a file", mesh.name()))?;
-        let groups = read_obj_groups(self.scene.source.path(&file)).map_err(|error| error.to_string())?;
-        let Some(faces) = groups.get(name) else {
-            let names: Vec<&String> = groups.keys().collect();
+        let sets =
+            face_sets::of_mesh(self.scene, mesh, elements.faces.len()).map_err(|error| error.to_string())?;
+        let sets = sets.unwrap_or_default();
+        let Some(set) = sets.group(name) else {
+            let mut names: Vec<&String> = sets.groups.iter().map(|set| &set.name).collect();
+            names.sort_unstable();
             return Err(match names.as_slice() {
                 [] => format!("`{file}` has no groups"),
                 names => format!("`{file}` has no group `{name}`, but {}", crate::diagnostic::listed(names)),
             });
         };
-        // Faces without area are left out of the mesh, so faces are known by their corners.
-        let own: BTreeSet<&[u32]> = faces.iter().map(Vec::as_slice).collect();
         let mut points = vec![false; elements.points];
-        faces.iter().flatten().for_each(|&point| points[point as usize] = true);
+        let corners = set.faces.iter().flat_map(|&face| elements.faces.face(face as usize));
+        corners.for_each(|&point| points[point as usize] = true);
         Ok(match kind {
-            ElementKind::Face => (0..)
-                .zip(elements.faces.iter())
-                .filter(|(_, face)| own.contains(face))
-                .map(|(at, _)| at)
-                .collect(),
+            ElementKind::Face => set.faces.clone(),
             _ => elements.all_of(kind, &points),
         })
     }

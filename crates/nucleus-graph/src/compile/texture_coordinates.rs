@@ -3,9 +3,11 @@
 
 use std::collections::BTreeMap;
 
+use nucleus_core::Faces;
+
 use crate::attributes::{mesh, n_base};
 use crate::graph::Node;
-use crate::mesh::{CornerUvs, MeshFile, MeshFormat, read_obj_corner_uvs};
+use crate::mesh::{CornerUvs, KeptFaces, MeshFile, MeshFormat, read_obj, read_obj_corner_uvs};
 use crate::scene::document::Scene;
 
 use super::geometry::{file_of, plane_uvs, primitive};
@@ -21,7 +23,7 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
     let of = |object: &Object| {
         let (node, nucleus) = program.node_of(object.kind);
         let mesh = scene.graph.source(node, &n_base::INPUT_MESH)?;
-        let (mut values, mut corners) = of_mesh(scene, scene.graph.node(mesh))?;
+        let (mut values, mut corners) = of_mesh(scene, scene.graph.node(mesh), &object.faces)?;
         // A mirrored mesh has its faces turned.
         let is_mirrored = scene.graph.at(nucleus.start as f64).placement(mesh).mirrors();
         if is_mirrored && corners.len() == object.faces.corners().len() {
@@ -42,7 +44,7 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
         }
         let fits = match is_per_point {
             true => values.len() == object.points,
-            // Degenerate faces were left out of the mesh.
+            // A glTF file may have faces that were left out when its points were merged.
             false => corners.len() == object.faces.corners().len(),
         };
         let corners = if is_per_point { Vec::new() } else { corners };
@@ -51,8 +53,8 @@ pub fn texture_coordinates(scene: &Scene, program: &Program) -> BTreeMap<String,
     program.objects().iter().filter_map(of).collect()
 }
 
-/// The texture coordinates of a mesh node. Files are read again.
-pub(super) fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
+/// The texture coordinates of a mesh node, of which these faces are left. Files are read again.
+pub(super) fn of_mesh(scene: &Scene, node: &Node, faces: &Faces) -> Option<MeshCoordinates> {
     if let Some(uvs) = plane_uvs(node) {
         return Some((uvs, Vec::new()));
     }
@@ -61,7 +63,15 @@ pub(super) fn of_mesh(scene: &Scene, node: &Node) -> Option<MeshCoordinates> {
     }
     let path = scene.source.path(&file_of(scene, node)?);
     match MeshFormat::of(&path) {
-        MeshFormat::Obj => read_obj_corner_uvs(path).ok().flatten(),
+        MeshFormat::Obj => {
+            let (values, mut corners) = read_obj_corner_uvs(&path).ok().flatten()?;
+            if corners.len() != faces.corners().len() {
+                let kept = KeptFaces::of(&read_obj(path).ok()?).corners;
+                let given = |corner: u32| corners.get(corner as usize).copied();
+                corners = kept.into_iter().map(given).collect::<Option<_>>()?;
+            }
+            Some((values, corners))
+        }
         _ => {
             let opened = MeshFile::open(path, &node.get(&mesh::OBJECT), frames_of(scene)).ok()?;
             opened.mesh(scene.time.start).ok()?.uvs

@@ -76,7 +76,8 @@ impl Compiler<'_> {
     /// The texture coordinates of each corner; reports why if there are none.
     fn weave_uvs(&mut self, cloth: NodeId, mesh: NodeId, rest: &Surface) -> Option<Vec<[f64; 2]>> {
         let mesh = self.scene.graph.node(mesh);
-        let uvs = of_mesh(self.scene, mesh).and_then(|coordinates| corner_uvs(coordinates, rest));
+        let uvs =
+            of_mesh(self.scene, mesh, &rest.faces).and_then(|coordinates| corner_uvs(coordinates, rest));
         if uvs.is_none() {
             let (name, mesh) = (self.weave_name(cloth), mesh.name());
             let message = format!("`weave` of `{name}` asks for texture coordinates: `{mesh}` has none");

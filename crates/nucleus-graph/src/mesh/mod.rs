@@ -5,7 +5,7 @@
 //! | which statements of an OBJ file are read         | [`read_obj`]                |
 //! | how PLY, glTF and USD files are read             | [`MeshFile`]                |
 //! | texture coordinates                              | [`read_obj_uvs`], [`poly_plane_uvs`] |
-//! | groups of faces                                  | [`read_obj_groups`]         |
+//! | groups and materials of faces                    | [`read_obj_face_sets`]      |
 //! | area, volume, bounding box, open edges           | `measures.rs`               |
 //! | which faces are dropped as degenerate            | [`drop_degenerate_faces`]   |
 //! | the size of a primitive, before it is made       | [`Primitive::size`]         |
@@ -21,12 +21,12 @@ mod measures;
 mod obj;
 mod primitive;
 
-pub use degenerate::drop_degenerate_faces;
+pub use degenerate::{KeptFaces, drop_degenerate_faces};
 pub use file::{FileMesh, Frames, MeshFile, MeshFileError, MeshFormat};
 pub(crate) use measures::{area, bounding_box, doubled_area, is_closed, is_open, sides, volume};
 pub use obj::{
-    CornerUvs, ObjError, ObjFault, read_obj, read_obj_corner_uvs, read_obj_groups, read_obj_points,
-    read_obj_uvs,
+    CornerUvs, FaceSet, FaceSets, ObjError, ObjFault, read_obj, read_obj_corner_uvs, read_obj_face_sets,
+    read_obj_points, read_obj_uvs,
 };
 pub use primitive::{
     Primitive, PrimitiveError, poly_cube, poly_cylinder, poly_plane, poly_plane_uvs, poly_sphere,

@@ -1,8 +1,8 @@
 //! Meshes from Wavefront OBJ files, with points in the order of the file.
 //!
 //! Two statements are read: `v` (position; weight and colour are ignored) and `f` (polygons, with corners as `7`,
-//! `7/2`, `7//5`, `7/2/5`, or counted backwards from `-1`). Normals, groups and materials are ignored. Names need
-//! not be UTF-8.
+//! `7/2`, `7//5`, `7/2/5`, or counted backwards from `-1`). Normals are ignored; texture coordinates, groups and materials have
+//! readers of their own. Names need not be UTF-8.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -13,12 +13,12 @@ use nucleus_core::Surface;
 use crate::files;
 
 pub use error::{ObjError, ObjFault};
-pub use groups::read_obj_groups;
+pub use face_sets::{FaceSet, FaceSets, read_obj_face_sets};
 use statement::{Fault, Statements, Word, number, words};
 pub use uvs::{CornerUvs, read_obj_corner_uvs, read_obj_uvs};
 
 mod error;
-mod groups;
+mod face_sets;
 mod statement;
 #[cfg(test)]
 mod tests;

@@ -48,7 +48,7 @@ impl Compiler<'_> {
     /// The texture coordinates of the triangles of a mesh of these faces; `None` if it has none.
     fn triangle_uvs(&self, mesh: NodeId, faces: &Faces) -> Result<Option<Vec<[[f64; 2]; 3]>>, String> {
         let placement = self.start.placement(mesh);
-        if let Some((values, corners)) = of_mesh(self.scene, self.scene.graph.node(mesh)) {
+        if let Some((values, corners)) = of_mesh(self.scene, self.scene.graph.node(mesh), faces) {
             let own = if corners.is_empty() { Some(faces.clone()) } else { with_corners(faces, &corners) };
             if let Some(uvs) = own.and_then(|own| triangles(&own, &placement, &values)) {
                 return Ok(Some(uvs));
