@@ -3,7 +3,8 @@
 use std::io::{Read, Seek};
 
 use nucleus_cache::{
-    Camera, CameraView, LiquidSurface, ObjectInfo, ObjectKind, Playback, RunInfo, TextureCoordinates,
+    Camera, CameraView, FaceSets, LiquidSurface, ObjectInfo, ObjectKind, Playback, RunInfo,
+    TextureCoordinates,
 };
 use nucleus_core::{Particle, ParticleLook};
 
@@ -205,6 +206,29 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         let uvs = self.texture_coordinates(object).cloned();
         let object = self.object_at(object, sample)?;
         Ok(uvs.filter(|uvs| uvs.fit(object.rest.len(), object.faces.corners().len())))
+    }
+
+    /// The groups and materials of an object's faces; they fit its first mesh.
+    pub fn face_sets(&self, object: usize) -> Option<&FaceSets> {
+        let info = self.object(object);
+        let found = self.cache.run().face_sets.get(&info.name)?;
+        found.fit(info.faces.len()).then_some(found)
+    }
+
+    /// The groups and materials of an object's faces at a sample. Faces keep their numbers in a mesh that changes; none where
+    /// there is another number of faces.
+    ///
+    /// # Errors
+    /// When the frame that holds the mesh is damaged.
+    pub(crate) fn face_sets_at(
+        &mut self,
+        object: usize,
+        sample: usize,
+    ) -> Result<Option<FaceSets>, ExportError> {
+        let sets = self.face_sets(object).cloned();
+        let first = self.object(object).faces.len();
+        let now = self.object_at(object, sample)?.faces.len();
+        Ok(sets.filter(|_| now == first))
     }
 
     /// The cameras of the run.

@@ -2,17 +2,16 @@
 //!
 //! The weight of target k is 1 at sample k, and all weights are 0 at sample 0. Between samples the weights are linear,
 //! so points move along straight lines, as in a point cache. Normals are morphed with the positions. A point has more
-//! than one vertex at hard edges and along seams of texture coordinates. Each camera is a node with its motion.
+//! than one vertex at hard edges and along seams of texture coordinates. The faces of a material are a primitive. Each camera is a node with its motion.
 
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::ObjectInfo;
 use serde_json::{Value, json};
 
 use crate::clip::{Clip, extent};
 use crate::error::ExportError;
-use crate::materials;
+use crate::materials::{self, Material, Materials};
 use crate::output::{OutFile, Output};
 use crate::vertices::Vertices;
 
@@ -43,10 +42,11 @@ pub(crate) fn write<R: Read + Seek>(
     file.bytes(&text);
     file.bytes(&(length as u32).to_le_bytes());
     file.bytes(b"BIN\0");
+    let materials = Materials::of(clip);
     write_times(clip, &mut file);
     write_cameras(clip, &mut file);
     for (object, moves) in moving.iter().enumerate() {
-        write_object(clip, object, *moves, &mut file)?;
+        write_object(clip, object, *moves, &materials, &mut file)?;
         progress(0.5 + 0.5 * (object + 1) as f64 / moving.len() as f64);
     }
     output.finish(file)
@@ -104,6 +104,7 @@ fn describe<R: Read + Seek>(
     let bounds = json!([[times[0]], [times[times.len() - 1]]]);
     let time = document.add("SCALAR", FLOAT, times.len(), None, bounds);
     let objects = clip.objects().len();
+    let materials = Materials::of(clip);
     let (mut meshes, mut nodes, mut moving) = (Vec::new(), Vec::new(), Vec::new());
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
     for camera in 0..clip.cameras().len() {
@@ -117,7 +118,7 @@ fn describe<R: Read + Seek>(
     for object in 0..objects {
         clip.require_constant_topology(object, "glTF")?;
         let moves = clip.moves(object)?;
-        meshes.push(describe_mesh(clip, object, moves, &mut document)?);
+        meshes.push(describe_mesh(clip, object, moves, &materials, &mut document)?);
         nodes.push(json!({ "name": clip.object(object).name, "mesh": object }));
         if moves {
             let weights = times.len() * (times.len() - 1);
@@ -138,7 +139,7 @@ fn describe<R: Read + Seek>(
         "scenes": [{ "name": clip.title(), "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
         "nodes": nodes,
         "meshes": meshes,
-        "materials": describe_materials(clip),
+        "materials": describe_materials(&materials),
         "accessors": document.accessors,
         "bufferViews": document.views,
         "buffers": [{ "byteLength": document.length }],
@@ -156,20 +157,23 @@ fn describe_mesh<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     moves: bool,
+    materials: &Materials,
     document: &mut Document,
 ) -> Result<Value, ExportError> {
     let vertices = vertices(clip, object);
     let base = vertices.gather(&clip.positions(object, 0)?);
     let has_uvs = clip.texture_coordinates(object).is_some();
-    let corners = 3 * vertices.faces.triangles().count();
-    let mut primitive = json!({ "mode": if corners > 0 { TRIANGLES } else { POINTS } });
-    if corners > 0 {
-        primitive["indices"] =
-            document.add("SCALAR", UNSIGNED_INT, corners, Some(ELEMENT_ARRAY_BUFFER), Value::Null).into();
-    }
-    primitive["material"] = object.into();
+    let has_faces = !vertices.faces.is_empty();
+    let mut primitive = json!({ "mode": if has_faces { TRIANGLES } else { POINTS }, "material": object });
+    let parts: Vec<(usize, usize)> = triangles_by_material(clip, object, &vertices, materials)
+        .iter()
+        .map(|(material, corners)| {
+            let target = Some(ELEMENT_ARRAY_BUFFER);
+            (*material, document.add("SCALAR", UNSIGNED_INT, corners.len(), target, Value::Null))
+        })
+        .collect();
     primitive["attributes"] = json!({ "POSITION": document.add_points(&base) });
-    if corners > 0 {
+    if has_faces {
         primitive["attributes"]["NORMAL"] =
             document.add_floats("VEC3", base.len(), Some(ARRAY_BUFFER)).into();
     }
@@ -183,7 +187,7 @@ fn describe_mesh<R: Read + Seek>(
         for sample in 1..clip.samples().len() {
             let moved = differences(&vertices.gather(&clip.positions(object, sample)?), &base);
             let mut target = json!({ "POSITION": document.add_points(&moved) });
-            if corners > 0 {
+            if has_faces {
                 target["NORMAL"] = document.add_floats("VEC3", base.len(), Some(ARRAY_BUFFER)).into();
             }
             targets.push(target);
@@ -193,8 +197,40 @@ fn describe_mesh<R: Read + Seek>(
         mesh["extras"] = json!({ "targetNames": names });
         primitive["targets"] = targets.into();
     }
-    mesh["primitives"] = json!([primitive]);
+    // All primitives share the vertices of the mesh.
+    let part = |(material, indices): (usize, usize)| {
+        let mut part = primitive.clone();
+        part["indices"] = indices.into();
+        part["material"] = material.into();
+        part
+    };
+    mesh["primitives"] = match has_faces {
+        true => parts.into_iter().map(part).collect(),
+        false => json!([primitive]),
+    };
     Ok(mesh)
+}
+
+/// The triangles of an object, by material: its place among all, and the corners.
+fn triangles_by_material<R: Read + Seek>(
+    clip: &Clip<R>,
+    object: usize,
+    vertices: &Vertices,
+    materials: &Materials,
+) -> Vec<(usize, Vec<u32>)> {
+    let faces = &vertices.faces;
+    let sets = clip.face_sets(object);
+    let of_faces = sets.map_or(vec![None; faces.len()], |sets| sets.material_of_faces(faces.len()));
+    let named = sets.into_iter().flat_map(|sets| sets.materials.iter().enumerate());
+    let named = named.map(|(place, set)| (Some(place), materials.of_faces(set)));
+    let corners = |(own, material): (Option<usize>, usize)| {
+        let own = of_faces.iter().zip(faces.iter()).filter(move |(place, _)| **place == own);
+        let triangles =
+            own.flat_map(|(_, face)| (2..face.len()).map(move |k| [face[0], face[k - 1], face[k]]));
+        (material, triangles.flatten().collect::<Vec<u32>>())
+    };
+    let parts = std::iter::once((None, object)).chain(named).map(corners);
+    parts.filter(|(_, corners)| !corners.is_empty()).collect()
 }
 
 /// Writes the arrays that [`describe_mesh`] lists, in its order, and the weights of the animation.
@@ -202,12 +238,15 @@ fn write_object<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     moves: bool,
+    materials: &Materials,
     file: &mut OutFile,
 ) -> Result<(), ExportError> {
     let vertices = vertices(clip, object);
     let base = vertices.gather(&clip.positions(object, 0)?);
     let has_faces = !vertices.faces.is_empty();
-    vertices.faces.triangles().flatten().for_each(|vertex| file.bytes(&vertex.to_le_bytes()));
+    for (_, corners) in triangles_by_material(clip, object, &vertices, materials) {
+        corners.iter().for_each(|vertex| file.bytes(&vertex.to_le_bytes()));
+    }
     file.floats_le(&base);
     let rest = vertices.normals(&base);
     if has_faces {
@@ -266,17 +305,16 @@ fn texture_coordinates<R: Read + Seek>(clip: &Clip<R>, object: usize, vertices: 
     }
 }
 
-fn describe_materials<R: Read + Seek>(clip: &Clip<R>) -> Value {
-    let colours = materials::colours(clip.objects().map(|object| object.kind));
-    let material = |(object, [red, green, blue]): (&ObjectInfo, [f32; 3])| {
+fn describe_materials(materials: &Materials) -> Value {
+    let material = |Material { name, colour: [red, green, blue] }: &Material| {
         let surface = json!({
             "baseColorFactor": [red, green, blue, 1.0],
             "metallicFactor": 0,
             "roughnessFactor": materials::ROUGHNESS,
         });
-        json!({ "name": object.name, "doubleSided": true, "pbrMetallicRoughness": surface })
+        json!({ "name": name, "doubleSided": true, "pbrMetallicRoughness": surface })
     };
-    clip.objects().zip(colours).map(material).collect()
+    materials.all.iter().map(material).collect()
 }
 
 /// The channels of the motion of a camera.

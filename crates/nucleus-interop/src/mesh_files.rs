@@ -1,14 +1,15 @@
 //! Mesh files, one for each object and time sample: Wavefront OBJ as text, PLY as binary.
 
+use std::collections::HashSet;
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use nucleus_cache::{LiquidSurface, ObjectInfo, TextureCoordinates};
+use nucleus_cache::{FaceSets, LiquidSurface, ObjectInfo, TextureCoordinates};
 use nucleus_core::{Faces, Particle};
 
 use crate::clip::{Clip, PARTICLE_FACTS, Sample};
 use crate::error::ExportError;
-use crate::materials;
+use crate::materials::{Material, Materials};
 use crate::output::{OutFile, Output, file_names};
 
 /// Writes `<object>.<frame>.obj` into a folder.
@@ -21,23 +22,26 @@ pub(crate) fn write_obj<R: Read + Seek>(
     write_obj_materials(clip, folder, output)?;
     each_file(clip, folder, "obj", output, progress, |file, mesh| {
         file.text(format!("mtllib {OBJ_MATERIALS}\n"));
-        write_obj_mesh(file, mesh.object, &mesh.positions, mesh.uvs.as_ref());
+        write_obj_mesh(file, mesh.object, &mesh.positions, mesh.uvs.as_ref(), mesh.sets.as_ref());
     })
 }
 
 /// The file of the materials beside the meshes.
 const OBJ_MATERIALS: &str = "materials.mtl";
 
-/// Writes a material per object, under its name.
+/// Writes the materials, each name once.
 fn write_obj_materials<R: Read + Seek>(
     clip: &Clip<R>,
     folder: &Path,
     output: &mut Output,
 ) -> Result<(), ExportError> {
     let mut file = output.file(folder.join(OBJ_MATERIALS))?;
-    let colours = materials::colours(clip.objects().map(|object| object.kind));
-    for (object, [red, green, blue]) in clip.objects().zip(colours) {
-        file.text(format!("newmtl {}\nKd {red} {green} {blue}\nillum 1\n", obj_name(&object.name)));
+    let mut written = HashSet::new();
+    for Material { name, colour: [red, green, blue] } in Materials::of(clip).all {
+        let name = obj_name(&name);
+        if written.insert(name.clone()) {
+            file.text(format!("newmtl {name}\nKd {red} {green} {blue}\nillum 1\n"));
+        }
     }
     output.finish(file)
 }
@@ -52,6 +56,7 @@ struct MeshSample<'a> {
     object: &'a ObjectInfo,
     positions: Vec<[f32; 3]>,
     uvs: Option<TextureCoordinates>,
+    sets: Option<FaceSets>,
     velocities: Option<Vec<[f32; 3]>>,
     particles: Option<Vec<Particle>>,
 }
@@ -75,16 +80,18 @@ fn each_file<R: Read + Seek>(
                 quads.iter().for_each(|quad| faces.push(quad));
                 let object = ObjectInfo { faces, ..clip.object(object).clone() };
                 let object = &object;
-                let mesh = MeshSample { object, positions, uvs: None, velocities: None, particles: None };
+                let (uvs, sets, velocities, particles) = (None, None, None, None);
+                let mesh = MeshSample { object, positions, uvs, sets, velocities, particles };
                 write(&mut file, &mesh);
                 output.finish(file)?;
                 continue;
             }
             let positions = clip.positions(object, sample)?;
             let uvs = clip.texture_coordinates_at(object, sample)?;
+            let sets = clip.face_sets_at(object, sample)?;
             let (velocities, particles) = (clip.velocities(object, sample)?, clip.particles(object, sample)?);
             let object = clip.object_at(object, sample)?;
-            write(&mut file, &MeshSample { object, positions, uvs, velocities, particles });
+            write(&mut file, &MeshSample { object, positions, uvs, sets, velocities, particles });
             output.finish(file)?;
         }
         progress((sample + 1) as f64 / clip.samples().len() as f64);
@@ -119,13 +126,15 @@ fn parts_of_frame(samples: &[Sample], index: usize) -> u32 {
     (1..1000).find(are_whole).unwrap_or(1_000_000)
 }
 
-/// Writes an object as OBJ with these positions, points without faces included. Blender keeps those when it imports PLY,
+/// Writes an object as OBJ with these positions, points without faces included. Faces stay in their order, so a group or a
+/// material is named as often as it begins anew; faces without a material have that of the object. Blender keeps those when it imports PLY,
 /// and drops them when it imports OBJ.
 pub(crate) fn write_obj_mesh(
     file: &mut OutFile,
     object: &ObjectInfo,
     positions: &[[f32; 3]],
     uvs: Option<&TextureCoordinates>,
+    sets: Option<&FaceSets>,
 ) {
     let name = obj_name(&object.name);
     file.text(format!("o {name}\n"));
@@ -135,9 +144,10 @@ pub(crate) fn write_obj_mesh(
     for [u, v] in uvs.map_or(&[][..], |uvs| &uvs.values) {
         file.text(format!("vt {u} {v}\n"));
     }
-    file.text(format!("usemtl {name}\n"));
+    let statements = SetStatements::new(sets, object.faces.len(), &name);
     let mut next = 0;
-    for face in object.faces.iter() {
+    for (index, face) in object.faces.iter().enumerate() {
+        file.text(statements.before(index));
         let corner = |(k, point): (usize, &u32)| match uvs {
             None => (point + 1).to_string(),
             Some(uvs) => {
@@ -150,7 +160,47 @@ pub(crate) fn write_obj_mesh(
         next += face.len();
     }
     if object.faces.is_empty() {
+        file.text(format!("usemtl {name}\n"));
         (1..=positions.len()).for_each(|point| file.text(format!("p {point}\n")));
+    }
+}
+
+/// The `g` and `usemtl` statements before the faces of a mesh.
+struct SetStatements<'a> {
+    sets: Option<&'a FaceSets>,
+    /// The name of the object: the material of faces without one.
+    own: &'a str,
+    groups: Vec<Vec<usize>>,
+    materials: Vec<Option<usize>>,
+}
+
+impl<'a> SetStatements<'a> {
+    fn new(sets: Option<&'a FaceSets>, faces: usize, own: &'a str) -> Self {
+        Self {
+            sets,
+            own,
+            groups: sets.map_or(vec![Vec::new(); faces], |sets| sets.groups_of_faces(faces)),
+            materials: sets.map_or(vec![None; faces], |sets| sets.material_of_faces(faces)),
+        }
+    }
+
+    /// Those before a face, where it differs from the face before it.
+    fn before(&self, face: usize) -> String {
+        let mut text = String::new();
+        let groups = &self.groups[face];
+        let before = face.checked_sub(1).map(|before| &self.groups[before]);
+        if before.map_or(!groups.is_empty(), |before| before != groups) {
+            let names = groups.iter().filter_map(|place| Some(obj_name(&self.sets?.groups[*place].name)));
+            let names: Vec<String> = names.collect();
+            // The name of the format for faces in no group.
+            text += &format!("g {}\n", if names.is_empty() { "default".to_owned() } else { names.join(" ") });
+        }
+        let material = self.materials[face];
+        if face == 0 || self.materials[face - 1] != material {
+            let name = material.zip(self.sets).map(|(place, sets)| obj_name(&sets.materials[place].name));
+            text += &format!("usemtl {}\n", name.as_deref().unwrap_or(self.own));
+        }
+        text
     }
 }
 

@@ -51,7 +51,8 @@ fn point_caches<R: Read + Seek>(
         let first = clip.positions(object, 0)?;
         let mut mesh = output.file(folder.join(format!("{name}.obj")))?;
         let uvs = clip.texture_coordinates(object).cloned();
-        write_obj_mesh(&mut mesh, clip.object_at(object, 0)?, &first, uvs.as_ref());
+        let sets = clip.face_sets_at(object, 0)?;
+        write_obj_mesh(&mut mesh, clip.object_at(object, 0)?, &first, uvs.as_ref(), sets.as_ref());
         output.finish(mesh)?;
         let mut file = output.file(folder.join(format!("{name}.{end}")))?;
         head(clip, first.len(), &mut file);

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use nucleus_cache::Playback;
 use nucleus_interop::{ExportError, Exported, Format, Request, Selection, export};
+use sample::exports::{parts, try_export, word};
 use sample::{END, START, UNITS, Variant};
 use tempfile::TempDir;
 
@@ -16,20 +17,6 @@ const POINTS: usize = 11;
 fn exported(format: Format, selection: Selection) -> (TempDir, PathBuf, Exported) {
     let (folder, out, exported) = try_export(sample::write, format, selection);
     (folder, out, exported.unwrap())
-}
-
-fn try_export(
-    write: impl Fn(&Path),
-    format: Format,
-    selection: Selection,
-) -> (TempDir, PathBuf, Result<Exported, ExportError>) {
-    let folder = tempfile::tempdir().unwrap();
-    let cache = folder.path().join("sample.mcap");
-    write(&cache);
-    let out = folder.path().join("out");
-    let request = Request { format, out: out.clone(), selection, force: false };
-    let exported = export(&mut Playback::open(&cache).unwrap(), &request, &mut |_| {});
-    (folder, out, exported)
 }
 
 fn all(format: Format) -> (TempDir, PathBuf) {
@@ -45,10 +32,6 @@ fn sheet(frame: i32) -> Vec<[f32; 3]> {
 fn floats<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f32) -> Vec<[f32; 3]> {
     let numbers: Vec<f32> = bytes.chunks_exact(N).map(|word| number(word.try_into().unwrap())).collect();
     numbers.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect()
-}
-
-fn word(bytes: &[u8], at: usize) -> u32 {
-    u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap())
 }
 
 #[test]
@@ -197,14 +180,6 @@ fn a_scale_changes_the_stated_unit_and_keeps_the_real_size() {
         let (_folder, _, refused) = try_export(sample::write, format, metres.clone());
         assert!(matches!(refused, Err(ExportError::FixedUnit { .. })), "{refused:?}");
     }
-}
-
-/// The JSON and the binary part of a glTF file.
-fn parts(path: &Path) -> (serde_json::Value, Vec<u8>) {
-    let bytes = fs::read(path).unwrap();
-    assert_eq!((&bytes[..4], word(&bytes, 8) as usize), (&b"glTF"[..], bytes.len()));
-    let text = word(&bytes, 12) as usize;
-    (serde_json::from_slice(&bytes[20..20 + text]).unwrap(), bytes[28 + text..].to_vec())
 }
 
 #[test]

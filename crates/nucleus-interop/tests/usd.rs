@@ -49,6 +49,35 @@ fn an_object_with_the_name_of_the_scope_of_materials_gets_another_one() {
 }
 
 #[test]
+fn groups_and_materials_of_faces_are_subsets_that_bind_their_material() {
+    let text = usda(Variant { sets: true, ..Variant::default() });
+    let sheet = prim(&text, "def Mesh \"ns_sheet_1\"");
+    assert!(
+        sheet.contains("uniform token subsetFamily:materialBind:familyType = \"nonOverlapping\""),
+        "{sheet}"
+    );
+    for (name, title, faces, material) in [
+        ("silk", "silk", "[0, 1]", Some("silk")),
+        ("wall", "wall", "[3]", Some("wall_2")),
+        ("hem", "hem", "[0, 2]", None),
+        ("left_side", "left side", "[2, 3]", None),
+    ] {
+        let begin = sheet.find(&format!("def GeomSubset \"{name}\"")).expect(name);
+        let subset = &sheet[begin..begin + sheet[begin..].find("\n        }").unwrap()];
+        assert!(subset.contains("uniform token elementType = \"face\""), "{subset}");
+        assert!(subset.contains(&format!("int[] indices = {faces}")), "{subset}");
+        assert!(subset.contains(&format!("custom string nucleus:name = \"{title}\"")), "{subset}");
+        assert_eq!(subset.contains("familyName = \"materialBind\""), material.is_some(), "{subset}");
+        if let Some(material) = material {
+            let path = format!("rel material:binding = </run/materials/{material}>");
+            assert!(subset.contains(&path), "{subset}");
+            assert!(text.contains(&format!("def Material \"{material}\"")), "{text}");
+        }
+    }
+    assert!(!usda(Variant::default()).contains("GeomSubset"));
+}
+
+#[test]
 fn particles_have_the_recorded_radius_colour_and_opacity_of_each_sample() {
     let text = usda(Variant { looks: true, ..Variant::default() });
     let dust = prim(&text, "def Points \"dust\"");

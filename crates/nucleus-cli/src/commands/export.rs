@@ -76,12 +76,12 @@ impl clap::ValueEnum for Wanted {
             return Some(PossibleValue::new("ma").help("a scene as Maya ASCII"));
         };
         let help = match format {
-            Format::Obj => "Wavefront OBJ, a file per object and frame",
+            Format::Obj => "Wavefront OBJ, a file per object and frame: UVs, groups, materials",
             Format::Ply => "binary PLY, a file per object and frame: UVs, velocities, particle numbers",
             Format::Pc2 => "point caches of 3ds Max and Blender, with their meshes",
             Format::Mdd => "point caches of LightWave, Modo and Houdini, with their meshes",
             Format::Usda => {
-                "USD with time samples as text, one file: meshes, UVs, normals, materials, cameras"
+                "USD with time samples as text, one file: meshes, UVs, normals, groups, materials, cameras"
             }
             Format::Usdc => "the same as binary, for Maya, Houdini and Blender",
             Format::Glb => "glTF with morph targets, one file: UVs, normals, materials, cameras",

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use nucleus_cache::Playback;
+use nucleus_cache::{FaceSet, Playback};
 
-use crate::sample::{folder, nucleus, scene, stderr};
+use crate::sample::{folder, nucleus, scene, stderr, stdout};
 
 /// Frames of the run that is exported.
 const FRAMES: u32 = 5;
@@ -101,6 +101,36 @@ fn cloth_from_a_usd_file_has_its_texture_coordinates() {
         cache.run().texture_coordinates[name].clone()
     };
     assert_eq!(uvs("again.mcap", "cloth"), uvs("drape.mcap", "cloth1"));
+}
+
+#[test]
+fn groups_and_materials_of_an_obj_file_come_back_from_the_cache_and_from_its_export() {
+    let folder = folder();
+    let mesh = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 2 0 0\nv 2 0 1\nmtllib shop.mtl\n\
+                usemtl silk\nf 1 2 3 4\ng hem\nusemtl wool\nf 2 5 6 3\n";
+    fs::write(folder.path().join("sheet.obj"), mesh).unwrap();
+    let run = |name: &str, file: &str| {
+        let text = format!(
+            r#"Scene(
+                time: (start: 1, end: 2, fps: 24),
+                nodes: {{ "n": nucleus(), "m": mesh(file: "{file}"), "cloth": nCloth(inputMesh: "m") }},
+            )"#
+        );
+        fs::write(folder.path().join(format!("{name}.ron")), text).unwrap();
+        let output = nucleus(folder.path(), &["run", &format!("{name}.ron")]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        Playback::open(folder.path().join(format!("{name}.mcap"))).unwrap().run().face_sets["cloth"].clone()
+    };
+    let sets = run("drape", "sheet.obj");
+    let set = |name: &str, faces: &[u32]| FaceSet { name: name.to_owned(), faces: faces.to_vec() };
+    assert_eq!(sets.groups, [set("hem", &[1])]);
+    assert_eq!(sets.materials, [set("silk", &[0]), set("wool", &[1])]);
+    let info = stdout(&nucleus(folder.path(), &["info", "drape.mcap"]));
+    assert!(info.contains("materials   silk (1 face), wool (1 face)"), "{info}");
+    export(folder.path(), &["--as", "obj", "-o", "out"]);
+    let again = run("again", "out/cloth.0002.obj");
+    assert_eq!(again.materials, sets.materials);
+    assert!(again.groups.contains(&sets.groups[0]), "{again:?}");
 }
 
 /// What `nucleus check` says about a mesh of this file, without the excerpt of the scene.

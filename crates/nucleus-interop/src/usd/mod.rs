@@ -9,7 +9,7 @@ use nucleus_cache::{ObjectInfo, ObjectKind};
 
 use crate::clip::{Clip, Extent, extent};
 use crate::error::ExportError;
-use crate::materials;
+use crate::materials::{self, Material, Materials};
 use crate::output::{Output, node_names};
 use crate::vertices::Vertices;
 
@@ -25,6 +25,7 @@ mod binary;
 mod camera;
 mod particles;
 mod stage;
+mod subsets;
 mod text;
 
 /// The scope of the materials beside the objects, and its path.
@@ -63,8 +64,12 @@ fn write<R: Read + Seek>(
     // The scope comes first, so that an object of its name gets another one.
     let objects = clip.objects().map(|object| object.name.as_str());
     let cameras = clip.cameras().iter().map(|camera| camera.name.as_str());
-    let names = node_names(iter::once(SCOPE).chain(objects).chain(cameras));
-    let (objects, cameras) = names[1..].split_at(clip.objects().len());
+    let materials = Materials::of(clip);
+    let of_faces = materials.of_all_faces().iter().map(|material| material.name.as_str());
+    let names = node_names(iter::once(SCOPE).chain(objects).chain(cameras).chain(of_faces));
+    let (objects, names) = names[1..].split_at(clip.objects().len());
+    let (cameras, of_faces) = names.split_at(clip.cameras().len());
+    let material_names = [objects, of_faces].concat();
     let samples = clip.samples();
     stage.head(&Head {
         title: clip.title(),
@@ -77,7 +82,8 @@ fn write<R: Read + Seek>(
     for (object, name) in objects.iter().enumerate() {
         let done = object as f64 / objects.len() as f64;
         let mut progress = |share: f64| progress(done + share / objects.len() as f64);
-        extents.extend(write_object(clip, object, name, stage, &mut progress)?);
+        let places = (&materials, material_names.as_slice());
+        extents.extend(write_object(clip, object, name, places, stage, &mut progress)?);
         if stage.has_failed() {
             break; // `finish` reports the error
         }
@@ -85,21 +91,23 @@ fn write<R: Read + Seek>(
     for (camera, name) in cameras.iter().enumerate() {
         write_camera(clip, camera, name, &extent(extents.as_flattened()), stage);
     }
-    write_materials(clip, objects, stage);
+    write_materials(&materials, &material_names, stage);
     stage.end();
     Ok(())
 }
 
-/// Writes an object; returns its extent at each sample.
+/// Writes an object; returns its extent at each sample. Each material has the name of its prim.
 fn write_object<R: Read + Seek>(
     clip: &mut Clip<R>,
     object: usize,
     name: &str,
+    (materials, names): (&Materials, &[String]),
     stage: &mut impl Stage,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<Extent>, ExportError> {
     let changes = !clip.mesh_changes(object).is_empty();
     let info = clip.object(object);
+    let faces = info.faces.len();
     let is_mesh = !info.faces.is_empty() || changes && info.kind != ObjectKind::Particles;
     let prim = Prim::of(if is_mesh { "Mesh" } else { "Points" }, name);
     stage.begin(&Prim { schemas: &["MaterialBindingAPI"], ..prim });
@@ -126,6 +134,11 @@ fn write_object<R: Read + Seek>(
     }
     write_orientations(clip, object, stage)?;
     write_velocities(clip, object, stage)?;
+    if let Some(sets) = clip.face_sets(object).filter(|_| is_mesh && !changes) {
+        subsets::write_subsets(sets, faces, stage, |set| {
+            format!("{MATERIALS}/{}", names[materials.of_faces(set)])
+        });
+    }
     stage.end();
     Ok(extents)
 }
@@ -279,11 +292,10 @@ fn write_velocities<R: Read + Seek>(
     Ok(())
 }
 
-/// A preview surface for each object, in the colour that the player gives it.
-fn write_materials<R: Read + Seek>(clip: &Clip<R>, objects: &[String], stage: &mut impl Stage) {
+/// A preview surface for each material. That of an object has the colour that the player gives it.
+fn write_materials(materials: &Materials, names: &[String], stage: &mut impl Stage) {
     stage.begin(&Prim::of("Scope", SCOPE));
-    let colours = materials::colours(clip.objects().map(|object| object.kind));
-    for (name, colour) in objects.iter().zip(colours) {
+    for (name, &Material { colour, .. }) in names.iter().zip(&materials.all) {
         let shader = format!("{MATERIALS}/{name}/surface");
         stage.begin(&Prim::of("Material", name));
         stage.connect(&Attribute::of("token", "outputs:surface"), &format!("{shader}.outputs:surface"));

@@ -2,12 +2,14 @@
 
 #![allow(dead_code)] // each user needs a part of it
 
+pub mod exports;
+
 use std::path::Path;
 
 use nalgebra::Vector3;
 use nucleus_cache::{
-    Camera, CameraView, Detail, FilmFit, ObjectInfo, ObjectKind, Recorder, RunInfo, Source,
-    TextureCoordinates,
+    Camera, CameraView, Detail, FaceSet, FaceSets, FilmFit, ObjectInfo, ObjectKind, Recorder, RunInfo,
+    Source, TextureCoordinates,
 };
 use nucleus_core::{ClothId, ColliderId, Particle, ParticleLook, StateView, StepObserver, SubstepIndex};
 
@@ -37,6 +39,8 @@ pub struct Variant {
     pub units_per_metre: f64,
     /// Name of the wall.
     pub wall: &'static str,
+    /// The faces of the sheet have groups and materials.
+    pub sets: bool,
     /// Each particle of the dust has a look of its own.
     pub looks: bool,
     /// In each frame a particle of the dust dies and another is born.
@@ -46,7 +50,8 @@ pub struct Variant {
 impl Default for Variant {
     fn default() -> Self {
         let (fps, substeps, units_per_metre) = (24.0, SUBSTEPS, UNITS);
-        Self { tears: false, fps, substeps, units_per_metre, wall: "wall", looks: false, lives: false }
+        let [tears, sets, looks, lives] = [false; 4];
+        Self { tears, fps, substeps, units_per_metre, wall: "wall", sets, looks, lives }
     }
 }
 
@@ -85,6 +90,7 @@ pub fn record(path: &Path, variant: Variant) {
                 (name.to_owned(), TextureCoordinates { values, corners: corners.to_vec() })
             })
             .into(),
+        face_sets: variant.sets.then(|| ("ns:sheet|1".to_owned(), face_sets())).into_iter().collect(),
         ..RunInfo::default()
     };
     let mut recorder = Recorder::create(path, &run, objects(variant.wall)).unwrap();
@@ -103,6 +109,15 @@ pub fn record(path: &Path, variant: Variant) {
         recorder.end_frame(&()).unwrap();
     }
     recorder.finish().unwrap();
+}
+
+/// Of the four faces of the sheet, one is in no group, one in two, and one has no material. The name of a group has a space.
+fn face_sets() -> FaceSets {
+    let set = |name: &str, faces: &[u32]| FaceSet { name: name.to_owned(), faces: faces.to_vec() };
+    FaceSets {
+        groups: vec![set("hem", &[0, 2]), set("left side", &[2, 3])],
+        materials: vec![set("silk", &[0, 1]), set("wall", &[3])],
+    }
 }
 
 /// A camera that rises, looking along -z.
