@@ -74,7 +74,7 @@ pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String
     let point = match for_error(&trade, &Request::every(wanted)) {
         Choice::Found(point) => point,
         Choice::Nearest(point) | Choice::Unresolved(point) => bail!(
-            "no setting of `{name}` reaches {}; the nearest has {}, with {}",
+            "no setting of `{name}` reaches {}; the nearest meets {}, with {}",
             report::percent(wanted),
             report::percent(point.error.unwrap_or_default()),
             point.setting
@@ -86,7 +86,7 @@ pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String
     };
     let error = report::percent(point.error.unwrap_or_default());
     let description = format!(
-        "{}: error {error}, about {} ms a frame on one core",
+        "{}: meets an error of {error}, about {} ms a frame on one core",
         point.setting,
         report::figure(point.ms)
     );

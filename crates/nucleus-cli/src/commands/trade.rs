@@ -41,7 +41,7 @@ const DEFAULT_ERROR: f64 = 0.01;
 /// Measures the error and the time of many settings of a scene, and recommends one.
 ///
 /// Errors are differences from a reference: the same scene in double precision with more and smaller time steps. Position,
-/// stretch, shape, silhouette and energy are measured each; a setting meets an error only if all of them do, the noise of the reference included. A few settings are tried first, then those near the best. Finished runs are stored, so an interrupted sweep continues. Writes a page with pictures, a table (.csv) and JSON.
+/// stretch, shape, silhouette and energy are measured each; a setting meets an error only if all of them do, the noise of the reference included. A quantity that the reference does not resolve at the wanted error does not decide, and is named. A few settings are tried first, then those near the best. Finished runs are stored, so an interrupted sweep continues. Writes a page with pictures, a table (.csv) and JSON.
 #[derive(Debug, Args)]
 pub struct Trade {
     /// The scene (.ron).

@@ -528,6 +528,12 @@ fn a_range_of_frames_is_compared_after_the_frames_that_lead_to_it() {
     assert_eq!(apart(&late)[..], apart(&whole)[7..]);
 }
 
+/// The row of a list for this error, without `to 1 %: `.
+fn row<'a>(said: &'a str, error: &str) -> &'a str {
+    let start = format!("to {error}: ");
+    said.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("{start}{said}"))
+}
+
 #[test]
 fn a_recommendation_and_its_page_say_what_the_references_do_not_resolve() {
     let folder = folder();
@@ -535,8 +541,16 @@ fn a_recommendation_and_its_page_say_what_the_references_do_not_resolve() {
     let output = nucleus(folder.path(), &["trade", "drape.ron"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let said = stdout(&output);
-    let words = "recommended for an error of 1 %, as far as the references resolve it (not silhouette below 1.33 %): ";
-    assert!(said.contains(words), "{said}");
+    let percent = |text: &str, after: &str| -> f64 {
+        let found = text.split_once(after).unwrap_or_else(|| panic!("{after}: {said}")).1;
+        found.split_once(" %").unwrap().0.parse().unwrap()
+    };
+    let floors = said.lines().find(|line| line.starts_with("The two references differ by: ")).unwrap();
+    let words = "as far as the references resolve it (not silhouette below ";
+    let sentence = said.lines().find(|line| line.starts_with("recommended for an error of 1 %, ")).unwrap();
+    let (floor, bound) = (percent(floors, "silhouette "), percent(sentence, words));
+    assert!((bound - 4.0 * floor).abs() < 0.01, "four times {floor} are not {bound}");
+    assert!(row(&said, "1 %").ends_with(&format!(", {words}{bound} %)")), "{said}");
     let html = fs::read_to_string(folder.path().join("drape.trade.html")).unwrap();
     assert!(html.contains(words), "the page says so too");
     assert!(html.contains("<tr><th>setting</th><th>ms</th>"), "the setting is the first column");

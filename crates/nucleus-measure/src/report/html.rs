@@ -6,8 +6,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::chart::{Axis, Chart, Dot, Line};
 use super::figures::{figure, percent};
-use super::text::{component, errors as errors_of, method_text, time_to};
-use crate::trade::{Point, Quantity, Reading, Request, Setting, Trade};
+use super::text::{ERRORS, component, errors, method_text, time_to};
+use crate::trade::{Choice, Component, Point, Quantity, Reading, Request, Setting, Trade, for_error};
 
 /// A picture of the last state of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,29 +69,36 @@ fn lead(page: &Page) -> Markup {
     html! {
         @for line in page.recommendation.lines() { p.lead { (line) } }
         @if let Some(own) = page.trade.own_point().filter(differs) {
-            p { "The scene's own setting, " (own.setting) ", takes " (figure(own.ms)) " ms: " (errors_of(own)) "." }
+            p { "The scene's own setting, " (own.setting) ", takes " (figure(own.ms)) " ms: " (errors_of(page.trade, own)) "." }
         }
     }
 }
 
-/// Time to three errors, and the slope of the curve.
+/// The errors of a setting in words.
+fn errors_of(trade: &Trade, point: &Point) -> String {
+    errors(trade, &Request::default(), point)
+}
+
+/// The recommendations for some errors, and the slope of the curve.
 fn cards(trade: &Trade) -> Markup {
     let card = |title: &str, big: &str, small: &str| {
         html! { div.card { div.soft { (title) } div.big { (big) } div.soft { (small) } } }
     };
     let time_to_error = |error: f64| {
         let title = format!("time to {}", percent(error));
-        match trade.cheapest(&Request::every(error)).filter(|_| trade.resolves(error)) {
-            Some(point) => card(&title, &format!("{} ms", figure(point.ms)), &point.setting.to_string()),
-            None => {
-                let why = time_to(trade, error);
-                card(&title, "–", why.split_once(": ").map_or(why.as_str(), |(_, why)| why))
+        let said = time_to(trade, error);
+        let said = said.split_once(": ").map_or(said.as_str(), |(_, said)| said);
+        match for_error(trade, &Request::every(error)) {
+            Choice::Found(point) => {
+                let with = said.split_once(" with ").map_or(said, |(_, with)| with);
+                card(&title, &format!("{} ms", figure(point.ms)), with)
             }
+            _ => card(&title, "–", said),
         }
     };
     html! {
         div.cards {
-            @for error in [0.1, 0.01, 0.001] { (time_to_error(error)) }
+            @for error in ERRORS { (time_to_error(error)) }
             @if let Some(slope) = trade.slope() {
                 (card("slope", &format!("{slope:.2}"), "exponent of error against time"))
             }
@@ -121,10 +128,15 @@ fn family(setting: &Setting) -> Family {
     (setting.reading == Reading::Classic, setting.substeps)
 }
 
-/// The bound of an error that the references do not resolve, where it is above the largest that they do.
-fn known_below(point: &Point) -> Option<f64> {
-    let unresolved = point.errors.iter().filter(|error| !error.is_resolved()).map(|error| 2.0 * error.floor);
-    unresolved.reduce(f64::max).filter(|bound| point.error.is_some_and(|error| *bound > error))
+/// The largest error that a setting may have against another reference, where it is above the error that it meets.
+fn known_below(trade: &Trade, point: &Point) -> Option<f64> {
+    let request = Request::default();
+    let largest = |error: &Component| {
+        let bound = request.noise_bound(&trade.measure, error);
+        bound.unwrap_or_else(|| error.largest())
+    };
+    let largest = point.errors.iter().map(largest).reduce(f64::max);
+    largest.filter(|bound| point.error.is_some_and(|error| *bound > error))
 }
 
 /// Error against time.
@@ -133,10 +145,10 @@ fn trade_chart(page: &Page) -> Markup {
     let families: BTreeSet<Family> = trade.points.iter().map(|point| family(&point.setting)).collect();
     let families: Vec<Family> = families.into_iter().collect();
     let errors = trade.points.iter().filter_map(place).map(|[_, error]| error);
-    let errors = errors.chain(trade.points.iter().filter_map(known_below));
+    let errors = errors.chain(trade.points.iter().filter_map(|point| known_below(trade, point)));
     let chart = Chart {
         x: Axis::log("milliseconds per frame, on one core", trade.points.iter().map(|point| point.ms)),
-        y: Axis::log("error: the largest that the references resolve", errors).in_percent(),
+        y: Axis::log("least wanted error that a setting meets", errors).in_percent(),
         dots: trade.points.iter().filter_map(|point| dot(page, &families, point)).collect(),
         lines: vec![Line { through: trade.frontier().filter_map(place).collect(), class: "frontier" }],
         floor: None,
@@ -170,10 +182,14 @@ fn dot(page: &Page, families: &[Family], point: &Point) -> Option<Dot> {
     let [ms, error] = [figure(point.ms), percent(at[1])];
     Some(Dot {
         at,
-        up_to: known_below(point),
+        up_to: known_below(page.trade, point),
         colour: families.iter().position(|of| *of == family(&point.setting)).unwrap_or(0),
         is_sound: point.is_sound(),
-        title: format!("{}\n{ms} ms, {error}\n{}{trouble}", point.setting, errors_of(point)),
+        title: format!(
+            "{}\n{ms} ms, meets {error}\n{}{trouble}",
+            point.setting,
+            errors_of(page.trade, point)
+        ),
         label: label.map(str::to_owned),
     })
 }
@@ -191,7 +207,7 @@ fn trade_key(trade: &Trade, families: &[Family]) -> Markup {
                 }
             }
             span { i style="border:2px solid var(--bad)" {} "not sound" }
-            @if trade.points.iter().any(|point| known_below(point).is_some()) {
+            @if trade.points.iter().any(|point| known_below(trade, point).is_some()) {
                 span { "line above a dot: in a quantity that the references do not resolve, the error may be as large" }
             }
         }
@@ -254,7 +270,7 @@ fn table(trade: &Trade) -> Markup {
         div.wide {
             table {
                 tr {
-                    @for head in ["setting", "ms", "error", "limited by"] { th { (head) } }
+                    @for head in ["setting", "ms", "meets", "limited by"] { th { (head) } }
                     @for quantity in &measured { th { (quantity.name()) } }
                     @for head in figures { th { (head) } }
                 }
@@ -273,7 +289,8 @@ fn row(trade: &Trade, point: &Point, measured: &[Quantity], is_reference: bool) 
     let limit = point.limit.filter(|_| !is_reference).map_or("–", Quantity::name).to_owned();
     let of = |quantity: &Quantity| {
         let found = point.errors.iter().find(|error| error.quantity == *quantity);
-        found.filter(|_| !is_reference).map_or("–".to_owned(), component)
+        let shown = |found| component(trade, &Request::default(), found);
+        found.filter(|_| !is_reference).map_or("–".to_owned(), shown)
     };
     let figures = [
         percent(point.strain),

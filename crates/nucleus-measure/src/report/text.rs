@@ -1,10 +1,13 @@
 //! Text renderings of a trade: terminal, CSV, and the Markdown index.
 
 use super::figures::{figure, percent};
-use crate::trade::{Choice, Component, Point, Quantity, Reading, Request, Trade, Wish};
+use crate::trade::{
+    Choice, Component, ErrorMeasure, Point, Quantity, Reading, Request, Trade, Wish, for_error,
+    least_promised,
+};
 
-/// Errors for which the time is reported.
-const ERRORS: [f64; 3] = [0.1, 0.01, 0.001];
+/// Errors for which the recommendation is reported.
+pub(super) const ERRORS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// Text for the terminal.
 pub fn text(trade: &Trade) -> String {
@@ -28,8 +31,10 @@ pub(super) fn method_text(trade: &Trade) -> String {
         let floor = |(quantity, floor): &(Quantity, f64)| format!("{} {}", quantity.name(), percent(*floor));
         let floors: Vec<String> = measure.floors.iter().map(floor).collect();
         text += &format!(
-            "\nThe two references differ by: {}. An error below twice that is within the noise of the references.",
-            floors.join(", ")
+            "\nThe two references differ by: {}. That is the noise of an error, and counts as error. They resolve a \
+             wanted error {}.",
+            floors.join(", "),
+            resolved_from(measure)
         );
     } else {
         text += "\nRead as Classic, cloth is a different material at every setting, so there is no reference; the error is \
@@ -38,18 +43,31 @@ pub(super) fn method_text(trade: &Trade) -> String {
     text
 }
 
-/// An error: `0.85 %`, or `<0.4 %` within the noise of the references.
-pub(super) fn component(component: &Component) -> String {
-    match component.is_resolved() {
-        true => percent(component.error),
-        false => format!("<{}", percent(2.0 * component.floor)),
+/// `from twice the noise on in position and stretch, and from four times in the other quantities`
+fn resolved_from(measure: &ErrorMeasure) -> String {
+    let quantities = measure.floors.iter().map(|(quantity, _)| *quantity);
+    let essential = quantities.filter(|quantity| measure.is_essential(*quantity)).map(Quantity::name);
+    match &essential.collect::<Vec<_>>()[..] {
+        [] => "from four times the noise on".to_owned(),
+        all => format!(
+            "from twice the noise on in {}, and from four times in the other quantities",
+            all.join(" and ")
+        ),
+    }
+}
+
+/// An error: `0.85 %`, or its bound, `<0.4 %`, within the noise of the references.
+pub(super) fn component(trade: &Trade, request: &Request, component: &Component) -> String {
+    match request.noise_bound(&trade.measure, component) {
+        None => percent(component.error),
+        Some(bound) => format!("<{}", percent(bound)),
     }
 }
 
 /// `position 0.4 %, stretch 6.1 %`: the error of a setting in each quantity.
-pub(super) fn errors(point: &Point) -> String {
-    let each = point.errors.iter().map(|error| format!("{} {}", error.quantity.name(), component(error)));
-    each.collect::<Vec<_>>().join(", ")
+pub(super) fn errors(trade: &Trade, request: &Request, point: &Point) -> String {
+    let one = |error: &Component| format!("{} {}", error.quantity.name(), component(trade, request, error));
+    point.errors.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// `an error of 1 %`, `stretch of 3 %`, `a time of 40 ms`.
@@ -72,23 +90,25 @@ pub fn request_name(request: &Request) -> String {
 /// The recommendation in words, one sentence a line.
 pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
     let wanted = wish_name(wish);
+    let request = match wish {
+        Wish::Error(request) => request.clone(),
+        Wish::Time(_) => Request::default(),
+    };
     let costs = |point: &Point| {
-        format!("{}, {} ms per frame; errors: {}", point.setting, figure(point.ms), errors(point))
+        let errors = errors(trade, &request, point);
+        format!("{}, {} ms per frame; errors: {errors}", point.setting, figure(point.ms))
     };
     let mut lines = match wish.choose(trade) {
         Choice::Found(point) => {
-            let except = match wish {
-                Wish::Error(request) => except(trade, request),
-                Wish::Time(_) => String::new(),
-            };
+            let except = except(trade, &request);
             let mut lines = vec![format!("recommended for {wanted}{except}: {}", costs(point))];
             lines.extend(reason(trade, wish, point));
-            lines
+            return lines.join("\n") + "\n";
         }
         Choice::Nearest(point) => {
             let mut lines = vec![format!("no setting reaches {wanted}; the nearest: {}", costs(point))];
             if let Wish::Error(request) = wish {
-                lines.push(format!("it misses {}", misses(request, point)));
+                lines.push(format!("it misses {}", misses(trade, request, point)));
             }
             lines
         }
@@ -102,9 +122,7 @@ pub fn recommendation(trade: &Trade, wish: &Wish) -> String {
             return format!("{reason}: there is no recommendation for {wanted}\n");
         }
     };
-    if let (Wish::Error(request), false) = (wish, matches!(wish.choose(trade), Choice::Found(_))) {
-        lines.extend(unresolved(trade, request));
-    }
+    lines.extend(too_noisy(trade, &request).map(|all| format!("the references do not resolve {all}")));
     lines.join("\n") + "\n"
 }
 
@@ -114,12 +132,12 @@ fn reason(trade: &Trade, wish: &Wish, chosen: &Point) -> Option<String> {
         Wish::Error(request) => {
             let cheaper = trade.points.iter().filter(|point| point.ms < chosen.ms && point.is_sound());
             let next = cheaper.max_by(|a, b| a.ms.total_cmp(&b.ms))?;
-            let (ms, missed) = (figure(next.ms), misses(request, next));
+            let (ms, missed) = (figure(next.ms), misses(trade, request, next));
             Some(format!("the next cheaper, {} in {ms} ms, misses {missed}", next.setting))
         }
         Wish::Time(_) => {
             let best = trade.frontier().last().filter(|best| best.setting != chosen.setting)?;
-            let (ms, errors) = (figure(best.ms), errors(best));
+            let (ms, errors) = (figure(best.ms), errors(trade, &Request::default(), best));
             Some(format!("lost against {} in {ms} ms: {errors}", best.setting))
         }
     }
@@ -127,11 +145,14 @@ fn reason(trade: &Trade, wish: &Wish, chosen: &Point) -> Option<String> {
 
 /// `stretch (6 % ± 0.5 %), energy (2 % ± 0.1 %)`: the quantities in which a setting misses a request, with the noise of the
 /// references, which counts as error.
-fn misses(request: &Request, point: &Point) -> String {
-    let missed = request.missed(&point.errors);
+fn misses(trade: &Trade, request: &Request, point: &Point) -> String {
+    let missed = request.missed(&trade.measure, &point.errors);
     let one = |c: &Component| format!("{} ({} ± {})", c.quantity.name(), percent(c.error), percent(c.floor));
     let all: Vec<String> = missed.map(one).collect();
-    if all.is_empty() { "nothing".to_owned() } else { all.join(", ") }
+    match all.is_empty() {
+        true => "nothing itself, but the same with more evaluations does".to_owned(),
+        false => all.join(", "),
+    }
 }
 
 /// `position and stretch are not measured`: what a request needs and nothing measures.
@@ -141,17 +162,16 @@ fn not_measured(trade: &Trade, request: &Request) -> Option<String> {
     (!missing.is_empty()).then(|| format!("{} {verb} not measured", missing.join(" and ")))
 }
 
-/// `shape below 1.4 %, silhouette below 6.4 %`: the quantities in which the references cannot show the wanted error.
-fn too_noisy(trade: &Trade, request: &Request) -> Option<String> {
-    let name =
-        |(quantity, floor): (Quantity, f64)| format!("{} below {}", quantity.name(), percent(2.0 * floor));
-    let all: Vec<String> = request.unresolved(&trade.measure).map(name).collect();
+/// `shape below 1.4 %, silhouette below 6.4 %`: quantities with the least error that the references resolve in them.
+fn bounds(all: impl Iterator<Item = (Quantity, f64)>) -> Option<String> {
+    let name = |(quantity, bound): (Quantity, f64)| format!("{} below {}", quantity.name(), percent(bound));
+    let all: Vec<String> = all.map(name).collect();
     (!all.is_empty()).then(|| all.join(", "))
 }
 
-/// The same as a sentence.
-fn unresolved(trade: &Trade, request: &Request) -> Option<String> {
-    too_noisy(trade, request).map(|all| format!("the references do not resolve {all}"))
+/// The quantities in which the references do not resolve the wanted error.
+fn too_noisy(trade: &Trade, request: &Request) -> Option<String> {
+    bounds(request.unresolved(&trade.measure))
 }
 
 /// The limits of a recommendation, which belong in its own sentence.
@@ -160,25 +180,33 @@ fn except(trade: &Trade, request: &Request) -> String {
     too_noisy(trade, request).map(limits).unwrap_or_default()
 }
 
-/// `to 1 %: 12.5 ms per frame with 96 evaluations in 3 substeps`.
+/// `to 1 %: 12.5 ms per frame with 96 evaluations in 3 substeps`: the recommendation for this error in every quantity.
 pub fn time_to(trade: &Trade, error: f64) -> String {
-    let wanted = percent(error);
-    let request = Request::every(error);
-    if let Some(missing) = not_measured(trade, &request) {
-        return format!("to {wanted}: not resolved, {missing}");
-    }
-    if let Some(floor) = request.deciding_floor(&trade.measure) {
-        return format!("to {wanted}: not resolved, the references differ by {}", percent(floor));
-    }
-    match (trade.cheapest(&request), trade.frontier().last()) {
-        (Some(point), _) => format!("to {wanted}: {} ms per frame with {}", figure(point.ms), point.setting),
-        (None, Some(best)) => format!(
-            "to {wanted}: no setting; the nearest misses {} in {} ms with {}",
-            misses(&request, best),
+    let (wanted, request) = (percent(error), Request::every(error));
+    let said = match for_error(trade, &request) {
+        Choice::Found(point) => {
+            let except = except(trade, &request);
+            format!("{} ms per frame with {}{except}", figure(point.ms), point.setting)
+        }
+        Choice::Nearest(best) => format!(
+            "no setting; the nearest misses {} in {} ms with {}",
+            misses(trade, &request, best),
             figure(best.ms),
             best.setting
         ),
-        (None, None) => format!("to {wanted}: no setting is sound"),
+        Choice::Unresolved(_) | Choice::None => not_promised(trade, &request),
+    };
+    format!("to {wanted}: {said}")
+}
+
+/// Why there is no setting for a request.
+fn not_promised(trade: &Trade, request: &Request) -> String {
+    if let Some(missing) = not_measured(trade, request) {
+        return format!("not resolved, {missing}");
+    }
+    match bounds(request.undecided(&trade.measure)) {
+        Some(undecided) => format!("not resolved, {undecided}"),
+        None => "no setting is sound".to_owned(),
     }
 }
 
@@ -191,7 +219,8 @@ fn table(trade: &Trade) -> Vec<String> {
         let of = |quantity: &Quantity| {
             let found = point.errors.iter().find(|error| error.quantity == *quantity);
             let mark = if point.limit == Some(*quantity) { "!" } else { "" };
-            format!(" {:>13}", found.map_or("lost".to_owned(), |found| mark.to_owned() + &component(found)))
+            let shown = |found| mark.to_owned() + &component(trade, &Request::default(), found);
+            format!(" {:>13}", found.map_or("lost".to_owned(), shown))
         };
         let errors: String = measured.iter().map(of).collect();
         let mark = if point.on_frontier { '*' } else { ' ' };
@@ -206,7 +235,8 @@ fn table(trade: &Trade) -> Vec<String> {
         ));
     }
     lines.push(
-        "* cheapest for its error; ! the quantity that limits; < within the noise of the references"
+        "* cheapest for its error; ! the quantity that limits it, or the same with more evaluations; < within the noise \
+         of the references: at most this, the noise included"
             .to_owned(),
     );
     lines
@@ -289,16 +319,16 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
          core.\n\n{machine}\n\n| Scene | Frames | Settings | Error | To 10 % | To 1 % | To 0.1 % | Slope | Its own setting |\n|---|---|---|---|---|---|---|---|---|\n"
     );
     for (name, trade) in trades {
-        let time = |error: f64| match trade.cheapest(&Request::every(error)) {
-            _ if !trade.resolves(error) => "not resolved".to_owned(),
-            Some(point) => format!("{} ms: {}", figure(point.ms), point.setting),
-            None => "no setting".to_owned(),
+        let time = |error: f64| match for_error(trade, &Request::every(error)) {
+            Choice::Found(point) => format!("{} ms: {}", figure(point.ms), point.setting),
+            Choice::Unresolved(_) => "not resolved".to_owned(),
+            Choice::Nearest(_) | Choice::None => "no setting".to_owned(),
         };
         let slope = trade.slope().map_or("–".to_owned(), |slope| format!("{slope:.2}"));
         let own = trade.own_point().map_or("–".to_owned(), |own| {
             format!("{} ms, {}", figure(own.ms), own.error.map_or("lost".to_owned(), percent))
         });
-        let [to_10, to_1, to_01] = [0.1, 0.01, 0.001].map(time);
+        let [to_10, to_1, to_01] = ERRORS.map(time);
         let measure = measure(trade);
         let ([from, to], settings) = (trade.frames, trade.points.len());
         text += &format!(
@@ -325,10 +355,7 @@ pub fn index(trades: &[(String, Trade)], machine: &str) -> String {
 
 /// The quantities and their frames, and the smallest errors that the references resolve.
 fn measure(trade: &Trade) -> String {
-    let floor = match trade.reference {
-        Some(_) => trade.measure.essential_floor(),
-        None => None,
-    };
-    let floor = floor.map(|floor| format!("; resolved from {}", percent(2.0 * floor))).unwrap_or_default();
-    trade.measure.windows(trade.frames) + &floor
+    let least = trade.reference.as_ref().and_then(|_| least_promised(&trade.measure));
+    let least = least.map(|least| format!("; resolved from {}", percent(least))).unwrap_or_default();
+    trade.measure.windows(trade.frames) + &least
 }

@@ -1,10 +1,13 @@
 //! The work-precision curve: every setting with its processor time and its error; frontier, slope, recommendation.
 
+use std::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 
 use super::benchmark::Benchmark;
-use super::error::{Component, ErrorMeasure, Quantity, Request};
+use super::error::{Component, ErrorMeasure, Quantity};
 use super::reference::References;
+use super::request::{Request, least_met};
 use super::run::Run;
 use super::setting::Setting;
 use crate::metrics::conservation::created;
@@ -23,10 +26,10 @@ pub struct Point {
     pub ms: f64,
     /// The error in each quantity; empty if the run was not finite.
     pub errors: Vec<Component>,
-    /// The largest error that the references resolve; if they resolve none, their noise floor. `None` if the run
-    /// was not finite.
+    /// The least error, wanted in every quantity, that the setting and all that differ from it only by more evaluations
+    /// meet. `None` if the run was not finite.
     pub error: Option<f64>,
-    /// The quantity of that error; `None` if all errors are within the noise of the references.
+    /// The quantity that sets this error; `None` if the noise of the references does.
     pub limit: Option<Quantity>,
     /// Distance from the reference up to the horizon: RMS and maximum.
     pub position: Option<[f64; 2]>,
@@ -85,7 +88,7 @@ impl Point {
         references: Option<&References>,
     ) -> Self {
         let errors = measure.of(benchmark, run, references.map(|both| &both.fine.run));
-        let (error, limit) = largest_resolved(&errors);
+        let (error, limit) = least_met(measure, &errors).unzip();
         let span = references.map_or(0, |both| both.horizon.frames.max(1));
         let divergence: Vec<[f64; 2]> =
             run.frames.iter().take(span).filter_map(|frame| frame.divergence).collect();
@@ -97,7 +100,7 @@ impl Point {
             ms: run.ms(),
             errors,
             error,
-            limit,
+            limit: limit.flatten(),
             position: (!divergence.is_empty()).then(|| {
                 [
                     root_mean_square(divergence.iter().map(|[rms, _]| *rms)),
@@ -149,6 +152,7 @@ impl Trade {
         let mut points: Vec<Point> =
             runs.iter().map(|run| Point::new(benchmark, run, &measure, references)).collect();
         points.sort_by(|a, b| a.ms.total_cmp(&b.ms));
+        include_finer(&mut points);
         mark_frontier(&mut points);
         // Nothing measures the finer reference itself.
         let reference = references.map(|both| Point {
@@ -176,19 +180,12 @@ impl Trade {
 
     /// The cheapest sound setting that meets a request, with all that differ from it only by more evaluations: where
     /// one of those misses it, the setting meets it by luck.
-    pub fn cheapest(&self, request: &Request) -> Option<&Point> {
-        let meets = |point: &Point| request.missed(&point.errors).next().is_none();
-        let is_finer = |finer: &&Point, point: &Point| {
-            let (finer, setting) = (finer.setting, point.setting);
-            finer.evaluations > setting.evaluations && finer.with_evaluations(setting.evaluations) == setting
+    fn cheapest(&self, request: &Request) -> Option<&Point> {
+        let meets = |point: &Point| request.missed(&self.measure, &point.errors).next().is_none();
+        let is_robust = |point: &Point| {
+            self.points.iter().filter(|finer| is_finer(&finer.setting, &point.setting)).all(meets)
         };
-        let is_robust = |point: &Point| self.points.iter().filter(|finer| is_finer(finer, point)).all(meets);
         self.points.iter().find(|point| point.is_sound() && meets(point) && is_robust(point))
-    }
-
-    /// Whether the references are exact enough to show this error in position and stretch.
-    pub fn resolves(&self, error: f64) -> bool {
-        !Request::every(error).is_unresolved(&self.measure)
     }
 
     /// Exponent of error against time along the frontier: -1 halves the error for twice the time.
@@ -213,21 +210,20 @@ impl Trade {
     }
 }
 
-/// Whether references with an uncertainty of `floor` resolve an error.
-pub(super) fn is_resolved(floor: f64, error: f64) -> bool {
-    2.0 * floor <= error
+/// Whether a setting differs from another only by more evaluations.
+fn is_finer(finer: &Setting, setting: &Setting) -> bool {
+    finer.evaluations > setting.evaluations && finer.with_evaluations(setting.evaluations) == *setting
 }
 
-/// The largest error above the noise of the references, with its quantity. The noise of position and stretch counts as
-/// an error too, without a quantity: an error far below it says nothing about a setting.
-fn largest_resolved(errors: &[Component]) -> (Option<f64>, Option<Quantity>) {
-    let counted = errors.iter().filter_map(|component| match component.is_resolved() {
-        true => Some((component.error, Some(component.quantity))),
-        false => component.quantity.is_essential().then_some((2.0 * component.floor, None)),
-    });
-    match counted.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((error, limit)) => (Some(error), limit),
-        None => (errors.iter().map(|component| 2.0 * component.floor).reduce(f64::min), None),
+/// Raises the error of each point to the largest of its finer ones: a setting that is better than those is so by luck.
+fn include_finer(points: &mut [Point]) {
+    let own: Vec<_> = points.iter().map(|point| (point.setting, point.error, point.limit)).collect();
+    for point in points.iter_mut().filter(|point| point.error.is_some()) {
+        let finer = own.iter().filter(|(setting, ..)| is_finer(setting, &point.setting));
+        let worst = finer.max_by(|a, b| a.1.partial_cmp(&b.1).unwrap_or(Ordering::Equal));
+        if let Some((_, error, limit)) = worst.filter(|(_, error, _)| *error > point.error) {
+            (point.error, point.limit) = (*error, *limit);
+        }
     }
 }
 
@@ -378,12 +374,23 @@ pub(super) mod tests {
     }
 
     /// A synthetic curve.
-    pub fn trade(mut points: Vec<Point>) -> Trade {
+    pub fn trade(points: Vec<Point>) -> Trade {
+        measured(ErrorMeasure { comparable: 47, floors: vec![(Quantity::Position, 1e-4)] }, points)
+    }
+
+    /// A curve of points with these errors.
+    pub fn measured(measure: ErrorMeasure, mut points: Vec<Point>) -> Trade {
+        for point in &mut points {
+            let (error, limit) = least_met(&measure, &point.errors).unzip();
+            (point.error, point.limit) = (error, limit.flatten());
+        }
+        points.sort_by(|a, b| a.ms.total_cmp(&b.ms));
+        include_finer(&mut points);
         mark_frontier(&mut points);
         Trade {
             name: "synthetic".to_owned(),
             frames: [1, 48],
-            measure: ErrorMeasure { comparable: 47, floors: vec![(Quantity::Position, 1e-4)] },
+            measure,
             divergence: vec![1e-4; 47],
             reference: None,
             own: points[0].setting,
@@ -406,14 +413,14 @@ pub(super) mod tests {
     #[test]
     fn an_error_inversely_proportional_to_time_has_a_slope_of_minus_one() {
         let trade = trade([1.0, 2.0, 4.0, 8.0].map(|ms| point(ms, 0.1 / ms)).to_vec());
-        assert!((trade.slope().unwrap() + 1.0).abs() < 1e-12);
+        // The noise floor of 0.01 % is part of each error.
+        assert!((trade.slope().unwrap() + 1.0).abs() < 0.01);
     }
 
     #[test]
     fn errors_below_the_reference_uncertainty_give_no_slope() {
-        let within = |ms| Point { limit: None, ..point(ms, 1e-4 / ms) };
-        let trade = trade([1.0, 2.0, 4.0].map(within).to_vec());
-        assert!(!trade.resolves(1e-4) && trade.resolves(1e-3));
+        let trade = trade([1.0, 2.0, 4.0].map(|ms| point(ms, 1e-4 / ms)).to_vec());
+        assert!(trade.points.iter().all(|point| point.limit.is_none()));
         assert_eq!(trade.slope(), None);
     }
 
@@ -444,6 +451,15 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn the_error_of_a_setting_includes_those_of_its_finer_ones() {
+        let lucky = trade(vec![point(1.0, 0.004), point(2.0, 0.05), point(4.0, 0.01)]);
+        let errors = lucky.points.iter().filter_map(|point| point.error);
+        assert!(
+            errors.zip([0.0501, 0.0501, 0.0101]).all(|(error, expected)| (error - expected).abs() < 1e-12)
+        );
+    }
+
+    #[test]
     fn an_error_that_the_references_do_not_resolve_is_not_promised() {
         let measure = ErrorMeasure { comparable: 47, floors: vec![(Quantity::Position, 0.004)] };
         let trade = Trade { measure, ..trade(vec![point(1.0, 0.1), point(2.0, 0.001)]) };
@@ -457,24 +473,12 @@ pub(super) mod tests {
         let of = |position, stretch| {
             vec![component(Quantity::Position, position), component(Quantity::Stretch, stretch)]
         };
-        let stretched = Point { errors: of(0.004, 0.06), error: Some(0.06), ..point(1.0, 0.0) };
-        let exact = Point { errors: of(0.004, 0.005), error: Some(0.005), ..point(4.0, 0.0) };
+        let stretched = Point { errors: of(0.004, 0.06), ..point(1.0, 0.0) };
+        let exact = Point { errors: of(0.004, 0.005), ..point(4.0, 0.0) };
         let trade = trade(vec![stretched, exact]);
         assert!(matches!(for_error(&trade, &Request::every(0.01)), Choice::Found(point) if point.ms == 4.0));
         let position = Request { every: None, bounds: vec![(Quantity::Position, 0.01)] };
         assert!(matches!(for_error(&trade, &position), Choice::Found(point) if point.ms == 1.0));
-    }
-
-    #[test]
-    fn the_error_of_a_setting_is_its_largest_resolved_component() {
-        let noisy = Component { quantity: Quantity::WorstStretch, error: 0.03, floor: 0.02 };
-        let found = largest_resolved(&[component(Quantity::Position, 0.004), noisy]);
-        assert_eq!(found, (Some(0.004), Some(Quantity::Position)));
-        assert_eq!(largest_resolved(&[noisy]), (Some(0.04), None));
-        assert_eq!(largest_resolved(&[]), (None, None));
-        let position = Component { quantity: Quantity::Position, error: 0.003, floor: 0.004 };
-        let tiny = Component { quantity: Quantity::WorstStretch, error: 1e-7, floor: 1e-9 };
-        assert_eq!(largest_resolved(&[position, tiny]), (Some(0.008), None));
     }
 
     #[test]
@@ -484,7 +488,6 @@ pub(super) mod tests {
         let beads = Trade { measure, ..trade(vec![energy(1.0), energy(2.0)]) };
         for error in [0.1, 0.01, 0.001] {
             assert_eq!(for_error(&beads, &Request::every(error)), Choice::None);
-            assert!(!beads.resolves(error));
         }
         assert_eq!(for_time(&beads, 9.0), Choice::None);
         let only_energy = Request { every: None, bounds: vec![(Quantity::Energy, 0.01)] };

@@ -1,9 +1,9 @@
 //! The error of a run: one figure for each quantity that an artist looks at, each against the reference and with the
 //! noise of the reference itself.
 //!
-//! A single figure misleads: cloth can be in the right position and still be visibly stretched. A setting therefore
-//! meets a wanted error only if every quantity does. The noise floor of a quantity is its difference between two
-//! references of steps h and h/2; an error below twice the floor is not resolved.
+//! A single figure misleads: cloth can be in the right position and still be visibly stretched. The noise floor of a
+//! quantity is its difference between two references of steps h and h/2. Which errors meet a wanted one, `request.rs`
+//! says.
 
 use serde::{Deserialize, Serialize};
 
@@ -56,9 +56,8 @@ impl Quantity {
         matches!(self, Self::Stretch | Self::WorstStretch | Self::Strain)
     }
 
-    /// Whether a wanted error that the references do not resolve in this quantity makes the whole recommendation
-    /// unresolved. In other quantities the error that the references resolve counts.
-    pub(super) fn is_essential(self) -> bool {
+    /// Whether every recommendation rests on it.
+    fn is_essential(self) -> bool {
         matches!(self, Self::Position | Self::Stretch | Self::Strain)
     }
 }
@@ -75,9 +74,9 @@ pub struct Component {
 }
 
 impl Component {
-    /// Whether the error is larger than the noise of the references.
-    pub fn is_resolved(&self) -> bool {
-        self.error > 2.0 * self.floor
+    /// The largest error that it may be against another reference.
+    pub fn largest(&self) -> f64 {
+        self.error + self.floor
     }
 }
 
@@ -137,8 +136,14 @@ impl ErrorMeasure {
         essential.map(|(_, floor)| *floor).reduce(f64::max)
     }
 
+    /// Whether every recommendation rests on a quantity: position and stretch, and the shape where positions can be
+    /// compared in no frame.
+    pub fn is_essential(&self, quantity: Quantity) -> bool {
+        quantity.is_essential() || self.comparable == 0 && quantity == Quantity::Shape
+    }
+
     /// Whether a quantity says where the points are, or how far the cloth gives in to its load.
-    fn shows_motion(&self) -> bool {
+    pub(super) fn shows_motion(&self) -> bool {
         let shows = |quantity| matches!(quantity, Quantity::Position | Quantity::Shape | Quantity::Strain);
         self.floors.iter().any(|(quantity, _)| shows(*quantity))
     }
@@ -214,76 +219,6 @@ fn raw(quantity: Quantity, comparable: usize, fall: f64, run: &Run, reference: &
     }
 }
 
-/// A wanted error: one for all quantities, and bounds of single ones.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Request {
-    /// The wanted error of every quantity without a bound of its own; `None`: any error.
-    pub every: Option<f64>,
-    /// Wanted errors of single quantities.
-    pub bounds: Vec<(Quantity, f64)>,
-}
-
-impl Request {
-    /// The same error in every quantity.
-    pub fn every(error: f64) -> Self {
-        Self { every: Some(error), bounds: Vec::new() }
-    }
-
-    /// The wanted error of a quantity.
-    pub fn of(&self, quantity: Quantity) -> Option<f64> {
-        self.bounds.iter().find(|(of, _)| *of == quantity).map(|(_, error)| *error).or(self.every)
-    }
-
-    /// The components of a run that miss the request. The noise of the references counts as error, because against
-    /// other references the error may be larger by it. An error within their noise misses nothing. A run that meets an
-    /// error therefore meets every larger one.
-    pub fn missed<'a>(&'a self, errors: &'a [Component]) -> impl Iterator<Item = &'a Component> {
-        errors.iter().filter(|component| {
-            let Component { error, floor, .. } = **component;
-            let misses = |wanted| component.is_resolved() && error + floor > wanted;
-            self.of(component.quantity).is_some_and(misses)
-        })
-    }
-
-    /// The quantities in which the references differ too much to show the wanted error, essential ones first.
-    pub fn unresolved<'a>(&'a self, measure: &'a ErrorMeasure) -> impl Iterator<Item = (Quantity, f64)> {
-        let floors = measure.floors.iter();
-        floors
-            .copied()
-            .filter(|(quantity, floor)| self.of(*quantity).is_some_and(|wanted| 2.0 * floor > wanted))
-    }
-
-    /// The quantities that the request needs and nothing measures: those that were bounded, and position, where an
-    /// error of every quantity is wanted and neither positions nor shapes can be compared.
-    pub fn unmeasured(&self, measure: &ErrorMeasure) -> Vec<Quantity> {
-        let needs_motion = self.every.is_some() && !measure.shows_motion();
-        let bounded = self.bounds.iter().map(|(quantity, _)| *quantity);
-        let mut missing: Vec<Quantity> =
-            bounded.filter(|quantity| measure.floor(*quantity).is_none()).collect();
-        if needs_motion && !missing.contains(&Quantity::Position) {
-            missing.insert(0, Quantity::Position);
-        }
-        missing
-    }
-
-    /// Whether the references cannot show the wanted error in position or stretch, or in a quantity that was bounded.
-    /// Where positions can be compared in no frame, the shape stands for them; where nothing shows the motion, every
-    /// error is unresolved.
-    pub fn is_unresolved(&self, measure: &ErrorMeasure) -> bool {
-        !self.unmeasured(measure).is_empty() || self.deciding_floor(measure).is_some()
-    }
-
-    /// The largest difference of the references in the quantities that make a request unresolved; `None` if none does.
-    pub fn deciding_floor(&self, measure: &ErrorMeasure) -> Option<f64> {
-        let is_bounded = |quantity| self.bounds.iter().any(|(of, _)| *of == quantity);
-        let is_place = |quantity| measure.comparable == 0 && quantity == Quantity::Shape;
-        let decides =
-            |quantity: Quantity| quantity.is_essential() || is_bounded(quantity) || is_place(quantity);
-        let deciding = self.unresolved(measure).filter(|(quantity, _)| decides(*quantity));
-        deciding.map(|(_, floor)| floor).reduce(f64::max)
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -291,70 +226,6 @@ pub(super) mod tests {
     /// A component with a small floor.
     pub fn component(quantity: Quantity, error: f64) -> Component {
         Component { quantity, error, floor: 1e-4 }
-    }
-
-    #[test]
-    fn a_request_is_missed_by_any_quantity_above_it() {
-        let errors = [component(Quantity::Position, 0.004), component(Quantity::Stretch, 0.06)];
-        let missed = |request: &Request| request.missed(&errors).map(|c| c.quantity).collect::<Vec<_>>();
-        assert_eq!(missed(&Request::every(0.01)), [Quantity::Stretch]);
-        assert_eq!(missed(&Request::every(0.1)), []);
-        let bounded = Request { every: Some(0.01), bounds: vec![(Quantity::Stretch, 0.07)] };
-        assert_eq!(missed(&bounded), []);
-        let only = Request { every: None, bounds: vec![(Quantity::Stretch, 0.03)] };
-        assert_eq!(missed(&only), [Quantity::Stretch]);
-    }
-
-    #[test]
-    fn an_error_within_the_noise_of_the_references_is_not_missed_but_named() {
-        let floors = vec![(Quantity::Position, 1e-3), (Quantity::WorstStretch, 0.02)];
-        let measure = ErrorMeasure { comparable: 9, floors };
-        let noisy = Component { quantity: Quantity::WorstStretch, error: 0.03, floor: 0.02 };
-        let request = Request::every(0.01);
-        assert_eq!(request.missed(&[noisy]).count(), 0);
-        assert_eq!(request.unresolved(&measure).collect::<Vec<_>>(), [(Quantity::WorstStretch, 0.02)]);
-        assert!(!request.is_unresolved(&measure), "the worst edge alone does not decide");
-        let bounded = Request { every: None, bounds: vec![(Quantity::WorstStretch, 0.01)] };
-        assert!(bounded.is_unresolved(&measure), "a bound that was asked for does");
-        assert!(Request::every(1e-3).is_unresolved(&measure));
-    }
-
-    #[test]
-    fn a_run_that_meets_an_error_meets_every_larger_one() {
-        for error in [0.001, 0.0135, 0.018, 0.019, 0.03] {
-            let shape = [Component { quantity: Quantity::Shape, error, floor: 0.009 }];
-            let is_met = |wanted: &f64| Request::every(*wanted).missed(&shape).next().is_none();
-            let wanted: Vec<f64> = (1..60).map(|k| 0.001 * f64::from(k)).collect();
-            let met: Vec<bool> = wanted.iter().map(is_met).collect();
-            assert!(met.is_sorted(), "an error of {error}: {met:?}");
-        }
-    }
-
-    #[test]
-    fn without_comparable_positions_an_unresolved_shape_decides() {
-        let floors = vec![(Quantity::Stretch, 1e-4), (Quantity::Shape, 0.02)];
-        let measure = |comparable| ErrorMeasure { comparable, floors: floors.clone() };
-        assert!(!Request::every(0.01).is_unresolved(&measure(9)));
-        assert!(Request::every(0.01).is_unresolved(&measure(0)));
-        assert!(!Request::every(0.05).is_unresolved(&measure(0)));
-        let strain = Request { every: None, bounds: vec![(Quantity::Stretch, 0.01)] };
-        assert!(!strain.is_unresolved(&measure(0)), "the shape was not asked for");
-    }
-
-    #[test]
-    fn a_request_for_what_is_not_measured_is_unresolved() {
-        // Particles whose motions diverge have no edges and no surface.
-        let beads = ErrorMeasure { comparable: 0, floors: vec![(Quantity::Energy, 1e-9)] };
-        assert_eq!(Request::every(0.01).unmeasured(&beads), [Quantity::Position]);
-        assert!(Request::every(1.0).is_unresolved(&beads));
-        let bound = |quantity| Request { every: None, bounds: vec![(quantity, 0.01)] };
-        assert_eq!(bound(Quantity::Stretch).unmeasured(&beads), [Quantity::Stretch]);
-        assert!(!bound(Quantity::Energy).is_unresolved(&beads));
-        let cloth =
-            ErrorMeasure { comparable: 0, floors: vec![(Quantity::Stretch, 0.0), (Quantity::Shape, 0.0)] };
-        assert_eq!(Request::every(0.01).unmeasured(&cloth), []);
-        assert_eq!(bound(Quantity::Position).unmeasured(&cloth), [Quantity::Position]);
-        assert_eq!(Request::every(0.01).unmeasured(&ErrorMeasure::without_reference()), []);
     }
 
     #[test]

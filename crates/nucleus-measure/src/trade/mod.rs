@@ -9,7 +9,8 @@
 //! | which settings are run                                         | `plan.rs`        |
 //! | one run, frame by frame, and its trajectory                    | [`run`]          |
 //! | reference runs, predictability horizon                         | `reference.rs`   |
-//! | the error of a run by quantity, its noise floors, wanted errors | `error.rs`       |
+//! | the error of a run by quantity, and its noise floors           | `error.rs`       |
+//! | wanted errors, and the rule by which a setting meets one       | `request.rs`     |
 //! | the curve: Pareto frontier, slope, recommended setting         | `curve.rs`       |
 //! | parallel execution, progress and resumption                    | [`sweep`]        |
 
@@ -18,17 +19,21 @@ mod curve;
 mod error;
 mod plan;
 mod reference;
+mod request;
 pub mod run;
 mod scene_at;
 mod setting;
 mod survey;
 pub mod sweep;
+#[cfg(test)]
+mod tests;
 
 pub use benchmark::{Benchmark, TradeError, object_positions};
 pub use curve::{Choice, Point, Trade, Wish, for_error, for_time};
-pub use error::{Component, ErrorMeasure, Quantity, Request};
+pub use error::{Component, ErrorMeasure, Quantity};
 pub use plan::SweepOptions;
 pub use reference::{ReferenceRun, References};
+pub use request::{Request, least_promised};
 pub use setting::{Reading, Setting};
 pub use survey::Survey;
 pub use sweep::{Elsewhere, Progress, RemoteRun, RemoteStage, SweepControl, SweepResult, run_sweep};

@@ -241,7 +241,7 @@ fn or_default<T: Clone>(requested: &[T], default: impl FnOnce() -> Vec<T>) -> Ve
 #[cfg(test)]
 mod tests {
     use super::super::curve::tests::{point, trade};
-    use super::super::error::Request;
+    use super::super::request::Request;
     use super::*;
 
     #[test]

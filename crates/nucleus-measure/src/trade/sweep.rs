@@ -9,10 +9,11 @@ use nucleus_graph::compile::Program;
 use serde::{Deserialize, Serialize};
 
 use super::benchmark::{Benchmark, MAX_REFERENCE_UNCERTAINTY, TradeError};
-use super::curve::{Choice, Trade, Wish, is_resolved};
+use super::curve::{Choice, Trade, Wish};
 use super::error::ErrorMeasure;
 use super::plan::{self, SweepOptions};
 use super::reference::{self, ReferenceRun, References};
+use super::request::is_resolved;
 use super::run::{Run, RunStates, Trajectory, key, run_setting};
 use super::setting::Setting;
 use crate::result_cache::ResultCache;

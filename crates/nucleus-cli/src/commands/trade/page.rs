@@ -67,7 +67,7 @@ pub fn of(
 fn caption(point: &Point) -> String {
     let error = point.error.map(report::percent).unwrap_or_default();
     let trouble = point.trouble().map(|trouble| format!("; {trouble}")).unwrap_or_default();
-    format!("{}; {} ms per frame, error {error}{trouble}", point.setting, report::figure(point.ms))
+    format!("{}; {} ms per frame, meets {error}{trouble}", point.setting, report::figure(point.ms))
 }
 
 /// Pictures of the last frame by one camera. Colours show strain, which makes errors visible.
