@@ -535,6 +535,35 @@ fn row<'a>(said: &'a str, error: &str) -> &'a str {
 }
 
 #[test]
+fn the_recommendation_and_the_list_are_the_same_whatever_error_was_asked_for() {
+    let folder = folder();
+    fs::write(folder.path().join("drape.ron"), SWING).unwrap();
+    let trade = |error: &str| {
+        let output = nucleus(folder.path(), &["trade", "drape.ron", "--error", error]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let text = fs::read_to_string(folder.path().join("drape.trade.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        (stdout(&output), json["points"].clone(), json["recommendation"]["point"].clone())
+    };
+    trade("1%");
+    trade("10%");
+    let (one, ten, again) = (trade("1%"), trade("10%"), trade("1%"));
+    assert_eq!(one.1, ten.1, "both show the runs of both");
+    assert_eq!(one, again);
+    for error in ["10 %", "1 %", "0.1 %"] {
+        assert_eq!(row(&one.0, error), row(&ten.0, error));
+    }
+    for (error, (said, _, point)) in [("1 %", &one), ("10 %", &ten)] {
+        let (_, with) = row(said, error).split_once(" ms per frame with ").unwrap();
+        let evaluations = format!(
+            "{} evaluations in {} substep",
+            point["setting"]["evaluations"], point["setting"]["substeps"]
+        );
+        assert!(with.starts_with(&evaluations.replace(".0 ", " ")), "{with}: {point}");
+    }
+}
+
+#[test]
 fn a_recommendation_and_its_page_say_what_the_references_do_not_resolve() {
     let folder = folder();
     fs::write(folder.path().join("drape.ron"), SWING).unwrap();

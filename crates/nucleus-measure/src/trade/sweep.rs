@@ -115,9 +115,11 @@ pub fn run_sweep(
 ) -> Result<SweepResult, TradeError> {
     let settings = plan::settings(benchmark, options)?;
     let progress = Progress { done: 0.0, runs: [0, 0], kept: 0 };
-    let mut done = Done { progress, before: 0.0, all: 0.0, finer: 0, round: None };
     let is_refined = options.is_refined();
-    let mut finer = plan::finenesses(is_refined).iter().peekable();
+    let all_finer = plan::finenesses(is_refined);
+    let finest = finest_stored(benchmark, &settings, all_finer, cache)?;
+    let mut done = Done { progress, before: 0.0, all: 0.0, finer: finest, round: None };
+    let mut finer = all_finer[finest..].iter().peekable();
     loop {
         let both = finer.next().and_then(|finer| plan::references(benchmark, &settings, *finer));
         let references = match both {
@@ -142,16 +144,40 @@ pub fn run_sweep(
             run_settings(benchmark, &near, references.as_ref(), cache, &mut done, &mut control, &mut runs)?;
             trade = Trade::new(benchmark, &runs, references.as_ref());
         }
+        let stored = with_stored(benchmark, &runs, references.as_ref(), cache)?;
+        if is_refined {
+            // A refined sweep has the runs near its own wish; with those of other wishes all show the same curve.
+            let is_tried = |run: &&Run| settings.iter().any(|tried| tried.reading == run.setting.reading);
+            runs = stored.iter().filter(is_tried).cloned().collect();
+            trade = Trade::new(benchmark, &runs, references.as_ref());
+        }
         // Finer references show no setting that is faster.
         let is_missed = matches!(wish, Wish::Error(_)) && !matches!(wish.choose(&trade), Choice::Found(_));
         if finer.peek().is_some() && references.is_some() && is_missed {
             done.make_finer();
             continue;
         }
-        let stored = with_stored(benchmark, &runs, references.as_ref(), cache)?;
         Trade::new(benchmark, &stored, references.as_ref()).save(cache)?;
         return Ok(SweepResult { trade, references, runs });
     }
+}
+
+/// The index of the finest references that an earlier sweep has made, else of the first ones. A wanted error is then
+/// judged by the same references after every sweep.
+fn finest_stored(
+    benchmark: &Benchmark,
+    settings: &[Setting],
+    finenesses: &[[f64; 2]],
+    cache: &ResultCache,
+) -> Result<usize, TradeError> {
+    for (index, finer) in finenesses.iter().enumerate().skip(1).rev() {
+        let Some(both) = plan::references(benchmark, settings, *finer) else { continue };
+        let [coarse, fine] = both.map(|setting| reference::load(cache, benchmark, &setting));
+        if coarse?.is_some() && fine?.is_some() {
+            return Ok(index);
+        }
+    }
+    Ok(0)
 }
 
 /// Whether references resolve what is wished, over enough frames.
