@@ -52,7 +52,7 @@ fn a_quiet_success_prints_nothing_and_a_quiet_failure_prints_its_report() {
 #[test]
 fn a_quiet_success_prints_the_warnings_of_its_result() {
     let folder = folder();
-    // Each point carries 250 g on links that two sweeps hold.
+    // At 60 kg/m², 24 evaluations hold the sheet to about 40 % of strain.
     let text = r#"Scene(time: (start: 1, end: 6, fps: 24), nodes: {
         "n": nucleus(evaluations: 24), "m": polyPlane(subdivisions: (4, 60), rotateX: 90),
         "c": nCloth(inputMesh: "m", pointMass: 60), "pin": dynamicConstraint(components: ["c.where(z < -0.49)"])})"#;

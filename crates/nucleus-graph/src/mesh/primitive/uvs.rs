@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn points_of_a_cylinder_have_one_place_on_each_of_its_charts_and_faces_are_seen_from_outside() {
-        for (caps, charts_of_rim) in [(0, 2), (1, 2), (3, 2)] {
+        for caps in [0, 1, 3] {
             let primitive = Primitive::Cylinder([1.0, 2.0], [5, 2, caps]);
             let faces = primitive.surface().expect("valid parameters").faces;
             let of_faces = of_faces(primitive);
@@ -231,9 +231,9 @@ mod tests {
                 places.dedup();
                 places.len()
             };
-            // Point 2 of the lower rim is on the side and on the cap, the last point of the cylinder on a cap alone.
+            // Point 2 of the lower rim is on the side and on the cap, that above it on the side alone.
             let rim = 5 * caps.saturating_sub(1);
-            assert_eq!(count(&places[&(rim + 2)]), charts_of_rim, "{caps}");
+            assert_eq!(count(&places[&(rim + 2)]), 2, "{caps}");
             assert_eq!(count(&places[&(rim + 5 + 2)]), 1, "{caps}");
         }
     }
