@@ -2,7 +2,8 @@
 //!
 //! The weight of target k is 1 at sample k, and all weights are 0 at sample 0. Between samples the weights are linear,
 //! so points move along straight lines, as in a point cache. Normals are morphed with the positions. A point has more
-//! than one vertex at hard edges and along seams of texture coordinates. The faces of a material are a primitive. Each camera is a node with its motion.
+//! than one vertex at hard edges and along seams of texture coordinates. The faces of a material are a primitive. Each
+//! camera is a node with its motion.
 
 use std::io::{Read, Seek};
 use std::path::Path;

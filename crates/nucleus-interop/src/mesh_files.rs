@@ -126,9 +126,9 @@ fn parts_of_frame(samples: &[Sample], index: usize) -> u32 {
     (1..1000).find(are_whole).unwrap_or(1_000_000)
 }
 
-/// Writes an object as OBJ with these positions, points without faces included. Faces stay in their order, so a group or a
-/// material is named as often as it begins anew; faces without a material have that of the object. Blender keeps those when it imports PLY,
-/// and drops them when it imports OBJ.
+/// Writes an object as OBJ with these positions, points without faces included; Blender keeps such points when it imports PLY, and
+/// drops them when it imports OBJ. Faces stay in their order, so a group or a material is named as often as it begins anew;
+/// faces without a material have that of the object.
 pub(crate) fn write_obj_mesh(
     file: &mut OutFile,
     object: &ObjectInfo,

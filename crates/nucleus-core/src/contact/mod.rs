@@ -70,7 +70,7 @@
 //! | `collider::start_gaps::START_GAP` | 20 µm | a point that starts in a surface begins on its outer side (Classic) |
 //! | `response::DEPENETRATION_SPEED` | 1 m/s | a depth from before the step resolves without a jump |
 //! | `response::ADHESION_RANGE` | 1.5 t | adhesion acts on contacts that have just separated |
-//! | `response::TOUCHING_GAP` | 1e-3 t | gap that still counts as touching |
+//! | `response::TOUCHING_GAP` | 1e-3 t | gap that still counts as touching; distance at which a released seam does |
 //! | `collider::broad_phase::WINDOW_MARGIN`, `INTERVAL_MARGIN` | 0.05 t, 0.5 t | smaller: more searches; larger: more contacts |
 //! | `collider::motion_bounds::MAX_TRAVEL` | 2 e | longer boxes overlap too much |
 //! | `collider::broad_phase::WINDOW_STEPS` | 8 | life of an active set |

@@ -164,7 +164,8 @@ pub fn share_per_step<R: Real>(grip: R, h: R) -> R {
     if left <= R::ZERO { R::ONE } else { grip * h / (left + grip * h) }
 }
 
-/// Gap above the thickness up to which a contact is touching, as a share of the thickness.
+/// Gap above the thickness up to which a contact is touching, as a share of the thickness; elements of a released seam touch at
+/// a distance below it.
 pub const TOUCHING_GAP: f64 = 1e-3;
 
 /// Restitution at a surface in one step.

@@ -32,7 +32,7 @@ node_table! {
         MIN_DISTANCE: f64 = float("minDistance", "min", 0.0).soft(0.0, 10.0).unit("scene units").solved("nucleus_graph::compile::emission");
         /// Direction of emission, for directional emitters.
         DIRECTION: [f64; 3] = vector("direction", "d", [1.0, 0.0, 0.0], ["dx", "dy", "dz"]).soft(-10.0, 10.0).solved("nucleus_graph::compile::emission");
-        /// Spread of the directions: 1 is a half space.
+        /// Spread of the directions: 1 is a half space, and 0 still 0.005 degrees.
         SPREAD: f64 = float("spread", "spr", 0.0).min(0.0).max(1.0).solved("nucleus_graph::compile::emission");
         /// Factor on the initial speed.
         SPEED: f64 = float("speed", "spd", 1.0).soft(0.0, 10.0).solved("nucleus_graph::compile::emission");

@@ -23,8 +23,8 @@ use super::walls::Walls;
 const MAX_ITERATIONS: u32 = 100;
 /// Mean excess of density at which the solution is accepted.
 const TOLERANCE: f32 = 2e-4;
-/// Least diagonal: that of a particle at rest is about 0.7. What a particle lacks is compliance, as ε in Macklin & Müller (eq. 11):
-/// particles in one place have no gradient, and a pressure without bound threw them off at the first wall.
+/// Least diagonal; that of a particle in a cubic grid is 0.43. What a particle lacks is compliance, as ε in Macklin & Müller
+/// (eq. 11): particles in one place have no gradient, and a pressure without bound threw them off at the first wall.
 const LEAST_DIAGONAL: f32 = 0.05;
 /// Largest eigenvalue of the preconditioned system that is taken for granted. It grows where a step shows a larger one.
 const START_EIGENVALUE: f32 = 2.0;
