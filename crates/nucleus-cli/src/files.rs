@@ -1,6 +1,6 @@
 //! Scenes and caches named on the command line: reading, compiling and opening them, with errors that name the file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use anyhow::{Context, Result, anyhow, ensure};
@@ -109,6 +109,14 @@ pub fn scene_from_text(text: String, path: &Path, frames: Option<FrameRange>) ->
             Ok(SceneFile { text, diagnostics, compiled: None })
         }
     }
+}
+
+/// The path of the scene of a cache, beside which meshes are found. If it no longer exists, a scene of that name beside the
+/// cache.
+pub fn recorded_scene(cache: &Playback, file: &Path) -> PathBuf {
+    let path = PathBuf::from(&cache.run().scene_path);
+    let beside = file.with_file_name(path.file_name().unwrap_or_default());
+    if !path.exists() && beside.exists() { beside } else { path }
 }
 
 impl SceneFile {

@@ -51,8 +51,8 @@ impl fmt::Display for InitialState {
 }
 
 impl InitialState {
-    /// The scene with this initial state for all of its cloth, and its program.
-    pub fn applied(&self, mut scene: Scene, program: &Program) -> Result<(Scene, Program)> {
+    /// The scene with this initial state for all of its cloth, and its program. `text` is that of the scene.
+    pub fn applied(&self, mut scene: Scene, program: &Program, text: &str) -> Result<(Scene, Program)> {
         let is_cloth = |object: &&Object| matches!(object.kind, compile::ObjectKind::Cloth(_));
         let cloths: Vec<&Object> = program.objects().iter().filter(is_cloth).collect();
         ensure!(!cloths.is_empty(), "the scene has no cloth that could start from a cache");
@@ -60,6 +60,7 @@ impl InitialState {
         let moment = files::moment(&cache, self.frame)
             .with_context(|| format!("cannot start from `{}`", self.cache.display()))?;
         let scale = program.units_per_metre() / cache.run().units_per_metre;
+        let recorded = if cache.run().scene_text == text { None } else { self.recorded_program(&cache)? };
         let (mut has_velocities, mut unknown) = (true, Vec::new());
         let at = cache.time_samples()[moment].frame;
         let from_start = at <= cache.run().start;
@@ -78,7 +79,8 @@ impl InitialState {
                 }
             };
             // Recorded velocities are per second of the scene, and those of a start state per second of the solver.
-            let per_second = scale / time_rate(program, cloth, at, from_start);
+            let per_second =
+                scale / time_rate(recorded.as_ref().unwrap_or(program), &cloth.name, at, from_start);
             match cloth.radius {
                 None => {
                     set_column(&mut scene, cloth, &n_base::START_POSITIONS.row, &positions, scale)?;
@@ -125,6 +127,19 @@ impl InitialState {
         let program =
             diagnostics::compile_changed(&scene, "the scene does not compile with this initial state")?;
         Ok((scene, program))
+    }
+
+    /// The program of the scene that the cache was recorded from: its velocities are in the time of that scene.
+    fn recorded_program(&self, cache: &Playback) -> Result<Option<Program>> {
+        let path = files::recorded_scene(cache, &self.cache);
+        let read = files::scene_from_text(cache.run().scene_text.clone(), &path, None)?;
+        if read.compiled.is_none() {
+            say!(
+                "warning: the scene in `{}` cannot be compiled, so its time is taken to run as that of this scene",
+                self.cache.display()
+            );
+        }
+        Ok(read.compiled.map(|(_, program)| program))
     }
 
     /// The object of the cache with the name and the mesh of a cloth.
@@ -234,8 +249,9 @@ fn set_ages(scene: &mut Scene, object: &Object, particles: &[Particle]) -> Resul
 }
 
 /// Solver seconds per second of the scene at a frame, of the nucleus of an object; 1 where its time stands still.
-fn time_rate(program: &Program, cloth: &Object, frame: i32, from_start: bool) -> f64 {
-    let compile::ObjectKind::Cloth(id) = cloth.kind else { return 1.0 };
+fn time_rate(program: &Program, name: &str, frame: i32, from_start: bool) -> f64 {
+    let kind = program.objects().iter().find(|object| object.name == name).map(|object| &object.kind);
+    let Some(&compile::ObjectKind::Cloth(id)) = kind else { return 1.0 };
     let (frame, every) = (f64::from(frame), program.every());
     let interval = if from_start { [frame, frame + 1.0] } else { [frame - every, frame] };
     let rate = program.time_rate(program.nucleus_of(id), interval);

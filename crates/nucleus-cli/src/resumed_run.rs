@@ -123,7 +123,11 @@ impl ResumedRun {
                     !text.is_empty(),
                     unresumable!("{} holds no scene: name it with `--scene`", self.name())
                 );
-                files::scene_from_text(text.clone(), &self.scene_path(), None)?
+                files::scene_from_text(
+                    text.clone(),
+                    &files::recorded_scene(&self.cache, &self.complete),
+                    None,
+                )?
             }
         };
         let path = changed.map_or_else(|| PathBuf::from(&run.scene_path), Path::to_owned);
@@ -183,13 +187,6 @@ impl ResumedRun {
         // `--frames` of the run replaced the frame range of the scene.
         scene.time.start = run.start.into();
         diagnostics::compile_changed(scene, "the scene of the run does not compile")
-    }
-
-    /// The path of the scene, beside which meshes are found. If it no longer exists, a scene of that name beside the cache.
-    fn scene_path(&self) -> PathBuf {
-        let path = PathBuf::from(&self.cache.run().scene_path);
-        let beside = self.complete.with_file_name(path.file_name().unwrap_or_default());
-        if !path.exists() && beside.exists() { beside } else { path }
     }
 
     /// The scene must have the objects, the frame rate and the units of the cache.

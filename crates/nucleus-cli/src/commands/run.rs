@@ -136,7 +136,7 @@ impl Run {
         let read = program.clone();
         let (scene, program) = match &self.from {
             None => (scene, program),
-            Some(from) => from.applied(scene, &program)?,
+            Some(from) => from.applied(scene, &program, &text)?,
         };
         let (scene, program) = match self.seed {
             None => (scene, program),

@@ -257,6 +257,31 @@ fn velocities_of_a_cache_are_converted_to_the_time_of_the_nucleus() {
 }
 
 #[test]
+fn velocities_of_a_cache_are_those_of_its_own_time_in_a_scene_of_another() {
+    let folder = folder();
+    let scene = |rate: f64| {
+        format!(
+            r#"Scene(time: (start: 1, end: 9, fps: 24), nodes: {{
+            "n": nucleus(gravity: 0, timeScale: {rate}),
+            "p": nParticle(position0: [(0, 0, 0)], velocity0: [(1, 0, 0)], drag: 0)}})"#
+        )
+    };
+    for [recorded, continued] in [[1.0, 0.5], [0.5, 1.0]] {
+        for velocities in [&["--velocities"][..], &[]] {
+            fs::write(folder.path().join("drape.ron"), scene(recorded)).unwrap();
+            run(folder.path(), &[&["-o", "whole.mcap", "--force"], velocities].concat());
+            fs::write(folder.path().join("drape.ron"), scene(continued)).unwrap();
+            let from = ["--from", "whole.mcap@5", "--frames", "5..9", "--force", "-o", "rest.mcap"];
+            assert_eq!(run(folder.path(), &from).status.code(), Some(0));
+            // At 1 m/s of its own time.
+            let expected = (4.0 * recorded + 4.0 * continued) / 24.0;
+            let (place, _) = state(folder.path(), "rest.mcap", 9);
+            assert!((f64::from(place[0][0]) - expected).abs() < 1e-5, "{place:?}, not {expected}");
+        }
+    }
+}
+
+#[test]
 fn an_initial_state_is_converted_between_space_scales() {
     let folder = folder();
     scene(folder.path(), 4, "");
