@@ -98,7 +98,7 @@ node_table! {
     "Dropoff" {
         /// Factor on `dropoffDistance`.
         DROPOFF: f64 = float("dropoff", "drp", 1.0).soft(0.0, 1.0).solved("nucleus_core::constraints::link");
-        /// Distance beyond which the constraint has no effect.
+        /// Distance over which `strengthDropoff` acts; beyond it, the right end of the ramp goes on.
         DROPOFF_DISTANCE: f64 = float("dropoffDistance", "ddd", 50.0).soft(0.0, 100.0).unit("scene units").solved("nucleus_core::constraints::link");
         /// Falloff of the strength over that distance.
         STRENGTH_DROPOFF: Cow<'static, [RampPoint]> = ramp("strengthDropoff", "sdp", FULL).solved("nucleus_core::constraints::link");
@@ -131,11 +131,11 @@ node_table! {
     }
     "Connections" {
         /// Time of the evaluation; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).hidden().elsewhere("the frame that is evaluated counts");
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).hidden().wiring("the frame that is evaluated counts");
         /// Its members.
         COMPONENT_IDS: Plugged = plug("componentIds", "cid", Data::Component).multi().solved("nucleus_graph::compile::constraints");
         /// Its initial state.
-        EVAL_START: Plugged = plug("evalStart", "evs", Data::Constraint).multi().output().elsewhere("`evalCurrent` stands for both");
+        EVAL_START: Plugged = plug("evalStart", "evs", Data::Constraint).multi().output().wiring("`evalCurrent` stands for both");
         /// Its current state.
         EVAL_CURRENT: Plugged = plug("evalCurrent", "evc", Data::Constraint).multi().output().solved("nucleus_graph::compile::constraints");
     }

@@ -249,11 +249,6 @@ pub(super) static DEPENDENCIES: &[Dependency] = &[
     },
     ramp!(POINT_FIELD_SCALE up to POINT_FIELD_SCALE_INPUT_MAX over POINT_FIELD_SCALE_INPUT),
     Dependency {
-        rows: &[&field::USE_MAX_DISTANCE.row],
-        need: Need::Number(&field::MAX_DISTANCE),
-        help: "give `maxDistance`: a field of no reach acts on nothing",
-    },
-    Dependency {
         rows: &[&field::MAX_DISTANCE.row, &field::FALLOFF_CURVE.row, &radial_field::RADIAL_TYPE.row],
         need: Need::On(&[&field::USE_MAX_DISTANCE]),
         help: "write `useMaxDistance: true`",

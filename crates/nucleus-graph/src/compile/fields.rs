@@ -156,12 +156,10 @@ impl FieldNode<'_> {
         // Detail is a second octave of the noise.
         let detail = self.number(&volume_axis_field::DETAIL_TURBULENCE);
         let time = self.number(&volume_axis_field::TURBULENCE_SPEED) * self.time;
-        let shape = self.volume(metre).map(|volume| volume.shape);
-        let has_center = matches!(shape, None | Some(VolumeShape::Cube | VolumeShape::Sphere));
-        let has_axis = !matches!(shape, Some(VolumeShape::Cube | VolumeShape::Sphere));
+        let away = away_from(self.to.get(self.id, &field::VOLUME_SHAPE));
         VolumeAxis {
-            from_center: if has_center { force(&volume_axis_field::AWAY_FROM_CENTER) } else { 0.0 },
-            from_axis: if has_axis { force(&volume_axis_field::AWAY_FROM_AXIS) } else { 0.0 },
+            from_center: if away.center { force(&volume_axis_field::AWAY_FROM_CENTER) } else { 0.0 },
+            from_axis: if away.axis { force(&volume_axis_field::AWAY_FROM_AXIS) } else { 0.0 },
             along_axis: force(&volume_axis_field::ALONG_AXIS),
             around_axis: force(&volume_axis_field::AROUND_AXIS),
             directional: self.direction(&volume_axis_field::DIRECTION)
@@ -232,6 +230,20 @@ impl FieldNode<'_> {
             is_excluded: self.to.get(self.id, &field::VOLUME_EXCLUSION),
         })
     }
+}
+
+/// Which of the two speeds away from the middle of a volume axis field act.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct AwayFrom {
+    /// `awayFromCenter`.
+    pub(super) center: bool,
+    /// `awayFromAxis`.
+    pub(super) axis: bool,
+}
+
+/// Those of a `volumeShape`: cubes and spheres have no axis, and cylinders, cones and tori no centre.
+pub(super) fn away_from(shape: Choice) -> AwayFrom {
+    AwayFrom { center: matches!(shape, Choice(0..=2)), axis: !matches!(shape, Choice(1 | 2)) }
 }
 
 /// The vector of unit length, or zero for the zero vector.

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::attributes::{
-    Key, NodeType, air_field, dynamic_constraint, field, gravity_field, n_base, n_particle, n_rigid, nucleus,
-    particle, point_emitter, uniform_field, vortex_field,
+    Key, NodeType, air_field, drag_field, dynamic_constraint, field, gravity_field, n_base, n_particle,
+    n_rigid, nucleus, particle, point_emitter, uniform_field, volume_axis_field, vortex_field,
 };
+use crate::compile::fields::away_from;
 use crate::diagnostic::Findings;
 use crate::graph::{Graph, NodeId, Plug};
 use crate::scene::document::Scene;
@@ -33,11 +34,8 @@ pub(super) fn warn_of_idle_nodes(scene: &Scene, broken: &BTreeSet<NodeId>, findi
         {
             let help = format!("give it one: `{}: (0, 1, 0)`", key.row.name);
             warn(id, format!("`{name}` acts on nothing: its `{}` is zero", key.row.name), &help);
-        } else if node.node_type().is_a(&air_field::AIR_FIELD)
-            && !graph.is_ever_nonzero(id, &air_field::SPEED)
-        {
-            let help = "`speed` is the rate at which objects take up its velocity: give it one, `speed: 1`";
-            warn(id, format!("`{name}` acts on nothing: its `speed` is zero"), help);
+        } else if let Some((missing, help)) = missing_of(graph, id) {
+            warn(id, format!("`{name}` acts on nothing: {missing}"), help);
         }
     }
     for (id, node) in graph.of_type(&n_base::N_BASE) {
@@ -69,6 +67,60 @@ pub(super) fn warn_of_idle_nodes(scene: &Scene, broken: &BTreeSet<NodeId>, findi
             warn(id, format!("`{}` constrains nothing: it has no nucleus", node.name()), help);
         }
     }
+}
+
+/// What a field lacks that would let it act, and a remedy.
+fn missing_of(graph: &Graph, id: NodeId) -> Option<(&'static str, &'static str)> {
+    let node_type = graph.node(id).node_type();
+    let is_zero = |key: &Key<f64>| !graph.is_ever_nonzero(id, key);
+    let is_always = |key: &Key<bool>| !graph.changes(id, key) && graph.at(0.0).get(id, key);
+    let never_positive =
+        |key: &Key<f64>| is_zero(key) || (!graph.changes(id, key) && graph.at(0.0).get(id, key) < 0.0);
+    if is_always(&field::USE_MAX_DISTANCE) && never_positive(&field::MAX_DISTANCE) {
+        return Some((
+            "its `maxDistance` is not above zero",
+            "give `maxDistance`, or `useMaxDistance: false`",
+        ));
+    }
+    if node_type.is_a(&air_field::AIR_FIELD) {
+        let help = "`speed` is the rate at which objects take up its velocity: give it one, `speed: 1`";
+        if is_zero(&air_field::SPEED) {
+            return Some(("its `speed` is zero", help));
+        }
+        if is_always(&air_field::ENABLE_SPREAD) && never_positive(&air_field::SPREAD) {
+            return Some((
+                "its `spread` is zero",
+                "give it an angle, `spread: 0.5`, or `enableSpread: false`",
+            ));
+        }
+    }
+    if node_type.is_a(&drag_field::DRAG_FIELD)
+        && is_always(&drag_field::USE_DIRECTION)
+        && !graph.is_ever_nonzero(id, &drag_field::DIRECTION)
+    {
+        return Some((
+            "its `direction` is zero",
+            "give it one: `direction: (0, 1, 0)`, or `useDirection: false`",
+        ));
+    }
+    (node_type.is_a(&volume_axis_field::VOLUME_AXIS_FIELD) && !volume_axis_acts(graph, id))
+        .then_some(("none of its speeds has an effect in its volume", "give one, such as `alongAxis: 1`"))
+}
+
+/// Whether any speed of a volume axis field is ever not zero, of those that its volume uses.
+fn volume_axis_acts(graph: &Graph, id: NodeId) -> bool {
+    use volume_axis_field::{
+        ALONG_AXIS, AROUND_AXIS, AWAY_FROM_AXIS, AWAY_FROM_CENTER, DIRECTION, DIRECTIONAL_SPEED, TURBULENCE,
+    };
+    let acts = |key: &Key<f64>| graph.is_ever_nonzero(id, key);
+    let changes = graph.changes(id, &field::VOLUME_SHAPE);
+    let away = away_from(graph.at(0.0).get(id, &field::VOLUME_SHAPE));
+    (acts(&AWAY_FROM_CENTER) && (changes || away.center))
+        || (acts(&AWAY_FROM_AXIS) && (changes || away.axis))
+        || acts(&ALONG_AXIS)
+        || acts(&AROUND_AXIS)
+        || acts(&TURBULENCE)
+        || (acts(&DIRECTIONAL_SPEED) && graph.is_ever_nonzero(id, &DIRECTION))
 }
 
 /// The attribute without which a field has no direction.

@@ -94,7 +94,7 @@ fn a_field_of_no_reach_acts_on_nothing_and_is_warned_of() {
     }
     let nodes = r#""n": nucleus(), "q": nParticle(position: [(0, 0, 0)]), "f": gravityField(target: "q",
         useMaxDistance: true)"#;
-    assert_eq!(warnings(nodes, ""), ["`useMaxDistance` of `f` has no effect: `maxDistance` is 0"]);
+    assert_eq!(warnings(nodes, ""), ["`f` acts on nothing: its `maxDistance` is not above zero"]);
 }
 
 #[test]
@@ -279,6 +279,22 @@ fn nodes_that_act_on_nothing_are_warned_of() {
         (
             r#""f": airField(target: "q", direction: (1, 0, 0), magnitude: 5)"#,
             "`f` acts on nothing: its `speed` is zero",
+        ),
+        (
+            r#""f": airField(target: "q", direction: (1, 0, 0), magnitude: 5, speed: 1, enableSpread: true)"#,
+            "`f` acts on nothing: its `spread` is zero",
+        ),
+        (
+            r#""f": dragField(target: "q", useDirection: true)"#,
+            "`f` acts on nothing: its `direction` is zero",
+        ),
+        (
+            r#""f": volumeAxisField(target: "q", volumeShape: cylinder, awayFromAxis: 0, awayFromCenter: 5)"#,
+            "`f` acts on nothing: none of its speeds has an effect in its volume",
+        ),
+        (
+            r#""f": volumeAxisField(target: "q", volumeShape: sphere, awayFromAxis: 5, awayFromCenter: 0)"#,
+            "`f` acts on nothing: none of its speeds has an effect in its volume",
         ),
         (
             r#""b": nRigid(inputMesh: "m2"), "m2": polyCube(), "f": gravityField(target: "b", direction: (0, 1, 0))"#,

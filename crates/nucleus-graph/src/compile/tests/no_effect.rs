@@ -219,7 +219,7 @@ fn a_switch_that_is_off_needs_nothing_else_to_be_off() {
     };
     assert_eq!(of_field("useMaxDistance: false"), Vec::<String>::new());
     assert_eq!(of_field("useMaxDistance: true, maxDistance: 2"), Vec::<String>::new());
-    assert!(of_field("useMaxDistance: true, maxDistance: 0")[0].contains("`maxDistance` is 0"));
+    assert!(of_field("useMaxDistance: true, maxDistance: 0")[0].contains("`maxDistance` is not above zero"));
 }
 
 #[test]
