@@ -1,9 +1,11 @@
 //! A cache holds the states of the solver, with equal bytes on any number of threads.
 
+use std::path::Path;
+
 use nucleus_cache::Detail;
 use nucleus_core::{ClothId, ColliderId};
-use nucleus_graph::compile::Program;
-use nucleus_tests::gallery::{program_of, program_of_text};
+use nucleus_graph::compile::{Program, compile};
+use nucleus_tests::gallery::{program_of, program_of_text, scene};
 use nucleus_tests::{Recording, record};
 
 /// A sheet of 2 601 points that falls on a rising ball, with four substeps. Threads share the points.
@@ -117,7 +119,8 @@ fn a_collider_is_recorded_where_its_keys_put_it_while_its_nucleus_is_not_solved(
         for (every, detail) in
             [(1.0, Detail::Frames), (1.0, Detail::Every(4)), (0.5, Detail::Frames), (1.0, Detail::Substeps)]
         {
-            let alone = program_of_text(&text(every, ""));
+            // It may begin later than the scene, which is a warning.
+            let alone = compile(&scene(&text(every, ""), Path::new("test.ron"))).expect("a valid scene");
             let both = program_of_text(&text(every, first));
             let [alone, both] = [alone, both].map(|program| record(&program, 23, 1, detail));
             let expected = heights(&both, "always");

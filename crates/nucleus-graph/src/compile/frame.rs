@@ -55,14 +55,23 @@ impl Program {
             .input(&mut AttachmentState::default(), &position)
     }
 
-    /// The ground plane of the first nucleus at each frame of the run; frames without one are left out.
+    /// The ground plane of the first nucleus at each frame of the run, where it changes; none where it stays. While it is off
+    /// it stays where it was last.
     pub fn ground_planes(&self) -> Vec<GroundPlane> {
+        let (node, graph) = (self.nuclei()[0].node(), self.graph());
+        let changes = graph.moves(node)
+            || graph.changes(node, &nucleus::PLANE_ORIGIN)
+            || graph.changes(node, &nucleus::PLANE_NORMAL);
+        if !changes {
+            return Vec::new();
+        }
         let TimeSpan { start, end, .. } = self.time();
         let at = |frame: i64| {
             let interval = self.interval(0, [frame as f64 - 1.0, frame as f64], 1.0, false);
             interval.ground_plane()
         };
-        (start..=end).filter_map(at).collect()
+        let mut last = (start..=end).find_map(at);
+        (start..=end).filter_map(|frame| at(frame).inspect(|plane| last = Some(*plane)).or(last)).collect()
     }
 
     /// The nodes that are evaluated for a frame of the first nucleus, in the order of evaluation.

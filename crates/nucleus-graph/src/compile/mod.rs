@@ -127,9 +127,24 @@ pub fn compile(scene: &Scene) -> Result<Program, Vec<Diagnostic>> {
         return Err(findings.in_order());
     }
     let mut program = link(scene, compiled, geometry.budget.taken());
+    warn_of_late_start(scene, program.nuclei(), &mut findings);
     budget::choose(scene, &mut program, &mut findings);
     program.set_warnings(findings.in_order());
     Ok(program)
+}
+
+/// Warns of frames of the scene before the first one of any nucleus: a run begins there.
+fn warn_of_late_start(scene: &Scene, nuclei: &[NucleusProgram], findings: &mut Findings) {
+    let Some(first) = nuclei.iter().min_by_key(|nucleus| nucleus.start()) else { return };
+    let (start, name) = (first.start(), scene.graph.node(first.node()).name());
+    if start > scene.time.start {
+        let message = format!(
+            "the run begins at frame {start}, where `{name}` starts, and not at frame {}",
+            scene.time.start
+        );
+        let warning = findings.warning(&scene.source.place(&format!("{name}.startFrame")), message);
+        warning.help(format!("write `time: (start: {start}, ...)`, or `startFrame: {}`", scene.time.start));
+    }
 }
 
 /// The diagnostics of compiling the valid part of a scene. Nothing is reported about `broken` nodes.

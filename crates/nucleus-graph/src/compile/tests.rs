@@ -387,6 +387,8 @@ fn a_run_begins_at_the_start_frame_with_the_positions_of_that_frame() {
     let late = program(&format!(r#""n": nucleus(startFrame: 5), {moving}"#));
     assert_eq!((late.time().start, late.model().positions(ClothId(0))[0].x), (5, 3.5));
     assert_eq!(program(&format!(r#""n": nucleus(), {moving}"#)).time().start, 1);
+    let message = &late.warnings()[0].message;
+    assert_eq!(message, "the run begins at frame 5, where `n` starts, and not at frame 1");
     let never = refused(&format!(r#""n": nucleus(startFrame: 25), {moving}"#));
     assert_eq!(never, "`startFrame` of `n` comes after the last frame, 24");
 }
