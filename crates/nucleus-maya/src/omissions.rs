@@ -68,6 +68,8 @@ pub enum Cause {
     Component(String),
     /// A connection between nodes that are carried over.
     Connection(String),
+    /// A connection to an attribute without effect, and why it has none.
+    NoEffect(String),
     /// Playback of a cache outside of its range, or backwards.
     CacheRange,
     /// Recorded results that lie beside the scene.
@@ -113,6 +115,7 @@ impl Cause {
             Self::Driven(kind) => format!("it is driven by a {kind}, which is not read"),
             Self::Expression(why) => format!("the expression cannot be translated: {why}"),
             Self::Connection(why) => format!("the connection is refused: {why}"),
+            Self::NoEffect(lack) => format!("the attribute {lack}"),
             Self::MovingParticles => "the transform of these particles is animated".to_owned(),
             Self::CacheRange => "caches are played forwards, once".to_owned(),
             Self::Cache(_) => "the scene plays recorded results".to_owned(),
@@ -152,7 +155,7 @@ impl Cause {
             Self::Motion(_) => "it stands still; import its file into Maya for the motion",
             Self::MovingParticles => "particles start at its first placement, and do not move with it",
             Self::Component(_) => "this part of the constraint does not act",
-            Self::Connection(_) => "the connection is left out",
+            Self::Connection(_) | Self::NoEffect(_) => "the connection is left out",
             Self::CacheRange => "outside of the range of the cache the object is simulated",
             Self::Cache(how) => how,
         }

@@ -73,7 +73,7 @@ fn table(node_type: &'static NodeType, all: bool) -> Result<String, std::fmt::Er
                 _ if node_type.has_no_use_for(row) => " No effect on such a node.".to_owned(),
                 Effect::NotYet => " No effect yet.".to_owned(),
                 Effect::Never => " No effect, in Maya neither.".to_owned(),
-                Effect::Elsewhere(reason) => format!(" No effect: {reason}."),
+                Effect::Elsewhere(reason) | Effect::Wiring(reason) => format!(" No effect: {reason}."),
             };
             let facts = facts(node_type, row);
             writeln!(text, "  {name:<36} {facts}\n      {}{without_effect}", row.doc())?;

@@ -62,13 +62,13 @@ pub mod field {
             /// Whether `maxDistance` limits the range.
             USE_MAX_DISTANCE: bool = toggle("useMaxDistance", "umd", false).solved("nucleus_core::fields::reach");
             /// Their positions.
-            INPUT_POSITIONS: Vec<[f64; 3]> = vectors("inputPositions", "inp").elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            INPUT_POSITIONS: Vec<[f64; 3]> = vectors("inputPositions", "inp").wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Their velocities.
-            INPUT_VELOCITIES: Vec<[f64; 3]> = vectors("inputVelocities", "inv").elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            INPUT_VELOCITIES: Vec<[f64; 3]> = vectors("inputVelocities", "inv").wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Their masses.
-            INPUT_MASS: Vec<f64> = floats("inputMass", "inm").elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            INPUT_MASS: Vec<f64> = floats("inputMass", "inm").wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Length of the time step.
-            DELTA_TIME: f64 = float("deltaTime", "dt", 0.0).elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            DELTA_TIME: f64 = float("deltaTime", "dt", 0.0).wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Shape of the volume that it acts in.
             VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "None"), (1, "Cube"), (2, "Sphere"), (3, "Cylinder"), (4, "Cone"), (5, "Torus")]).solved("nucleus_core::fields::reach");
             /// Acts outside the volume instead.
@@ -84,13 +84,13 @@ pub mod field {
         }
         "Connections" {
             /// Particles that it acts on.
-            INPUT_DATA: Plugged = plug("inputData", "ind", Data::FieldData).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            INPUT_DATA: Plugged = plug("inputData", "ind", Data::FieldData).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Forces that it adds to.
-            INPUT_FORCE: Plugged = plug("inputForce", "inf", Data::Vectors).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            INPUT_FORCE: Plugged = plug("inputForce", "inf", Data::Vectors).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Force on each particle.
-            OUTPUT_FORCE: Plugged = plug("outputForce", "of", Data::Vectors).multi().output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            OUTPUT_FORCE: Plugged = plug("outputForce", "of", Data::Vectors).multi().output().wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Settings per particle of the objects that it acts on.
-            INPUT_PP_DATA: Plugged = plug("inputPPData", "ppda", Data::FieldSettings).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+            INPUT_PP_DATA: Plugged = plug("inputPPData", "ppda", Data::FieldSettings).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
             /// Settings per particle of the owner.
             OWNER_PP_DATA: Plugged = plug("ownerPPData", "oppd", Data::FieldSettings).elsewhere("fields stand for themselves: none comes from the points of another object");
         }
@@ -172,7 +172,7 @@ pub mod drag_field {
             /// Speed of a point in scene units per second at which half of the drag is left; at rest there is none.
             SPEED_ATTENUATION: f64 = float("speedAttenuation", "spa", 0.0).solved("nucleus_core::fields::drag");
             /// Time of the evaluation; driven by `time1.outTime`.
-            CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).elsewhere("the clock of the nucleus counts");
+            CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).wiring("the clock of the nucleus counts");
         }
     }
 }
@@ -268,7 +268,7 @@ pub mod volume_axis_field {
             /// Strength of a second turbulence of higher frequency.
             DETAIL_TURBULENCE: f64 = float("detailTurbulence", "dtr", 0.0).solved("nucleus_graph::compile::fields");
             /// The time of the turbulence.
-            TIME: f64 = float("time", "tim", 0.0).elsewhere("the clock of the nucleus counts");
+            TIME: f64 = float("time", "tim", 0.0).wiring("the clock of the nucleus counts");
         }
     }
 }

@@ -230,6 +230,12 @@ impl<T> Key<T> {
         self
     }
 
+    /// Without effect here, as a part of Maya's wiring; `reason` is a clause that says why.
+    pub(super) const fn wiring(mut self, reason: &'static str) -> Self {
+        self.row.effect = Effect::Wiring(reason);
+        self
+    }
+
     /// Not an attribute of Maya.
     pub(super) const fn extension(mut self) -> Self {
         self.row.extension = true;

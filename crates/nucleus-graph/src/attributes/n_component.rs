@@ -50,7 +50,7 @@ node_table! {
         /// The component, as the input of a constraint.
         OUT_COMPONENT: Plugged = plug("outComponent", "ocp", Data::Component).output().solved("nucleus_graph::compile::constraints");
         /// A mesh that elements are taken from.
-        SURFACE: Plugged = plug("surface", "srf", Data::Mesh).elsewhere("elements are those of the object at `objectId`");
+        SURFACE: Plugged = plug("surface", "srf", Data::Mesh).wiring("elements are those of the object at `objectId`");
     }
     "Internal" {
         /// Number of the set that elements come from.

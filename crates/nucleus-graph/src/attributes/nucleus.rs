@@ -83,36 +83,36 @@ node_table! {
         /// Largest depth of a contact within the thickness.
         COLLISION_SOFTNESS: f64 = float("collisionSoftness", "clso", 0.0).min(0.0).max(1.0).hidden().unused();
         /// Kinds of element pairs that are tested between objects.
-        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden().elsewhere("the `collisionFlag` of each object counts");
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden().wiring("the `collisionFlag` of each object counts");
         /// Kinds of element pairs that are tested within an object.
-        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace")]).hidden().elsewhere("the `selfCollisionFlag` of each object counts");
+        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace")]).hidden().wiring("the `selfCollisionFlag` of each object counts");
     }
     "Connections" {
         /// Current state of each active object.
         INPUT_ACTIVE: Plugged = plug("inputActive", "niao", Data::State).multi().solved("nucleus_graph::compile::objects");
         /// Initial state of each active object.
-        INPUT_ACTIVE_START: Plugged = plug("inputActiveStart", "nias", Data::State).multi().elsewhere("the connection of `inputActive` stands for both");
+        INPUT_ACTIVE_START: Plugged = plug("inputActiveStart", "nias", Data::State).multi().wiring("the connection of `inputActive` stands for both");
         /// Current state of each collider.
         INPUT_PASSIVE: Plugged = plug("inputPassive", "nipo", Data::State).multi().solved("nucleus_graph::compile::objects");
         /// Initial state of each collider.
-        INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips", Data::State).multi().elsewhere("the connection of `inputPassive` stands for both");
+        INPUT_PASSIVE_START: Plugged = plug("inputPassiveStart", "nips", Data::State).multi().wiring("the connection of `inputPassive` stands for both");
         /// Current state of each constraint.
         INPUT_CURRENT: Plugged = plug("inputCurrent", "ic", Data::Constraint).multi().solved("nucleus_graph::compile::constraints");
         /// Initial state of each constraint.
-        INPUT_START: Plugged = plug("inputStart", "is", Data::Constraint).multi().elsewhere("the connection of `inputCurrent` stands for both");
+        INPUT_START: Plugged = plug("inputStart", "is", Data::Constraint).multi().wiring("the connection of `inputCurrent` stands for both");
         /// Solved state of each active object.
         OUTPUT_OBJECTS: Plugged = plug("outputObjects", "noao", Data::State).multi().output().solved("nucleus_graph::graph");
     }
     "Internal" {
         /// Time of the previous solve.
-        LAST_TIME: f64 = float("lastTime", "lti", 0.0).hidden().elsewhere("Maya's own bookkeeping between evaluations");
+        LAST_TIME: f64 = float("lastTime", "lti", 0.0).hidden().wiring("Maya's own bookkeeping between evaluations");
         /// Number of the evaluation.
-        EVAL_ID: f64 = float("evalId", "eid", 0.0).hidden().elsewhere("Maya's own bookkeeping between evaluations");
+        EVAL_ID: f64 = float("evalId", "eid", 0.0).hidden().wiring("Maya's own bookkeeping between evaluations");
         /// Skips the setup of objects.
-        SKIP_SETUP: bool = toggle("skipSetup", "sksp", false).hidden().elsewhere("Maya's own bookkeeping between evaluations");
+        SKIP_SETUP: bool = toggle("skipSetup", "sksp", false).hidden().wiring("Maya's own bookkeeping between evaluations");
         /// `startFrame` as a time.
-        START_TIME: f64 = float("startTime", "sti", 0.0).output().hidden().elsewhere("Maya's own bookkeeping between evaluations");
+        START_TIME: f64 = float("startTime", "sti", 0.0).output().hidden().wiring("Maya's own bookkeeping between evaluations");
         /// Reading it evaluates the node.
-        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden().elsewhere("Maya's own bookkeeping between evaluations");
+        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden().wiring("Maya's own bookkeeping between evaluations");
     }
 }

@@ -19,15 +19,15 @@ node_table! {
     PARTICLE = "particle", inherits None, hides [];
     "General" {
         /// Number of particles.
-        COUNT: i64 = int("count", "cnt", 0).output().elsewhere("an output that only Maya's expressions and shaders read");
+        COUNT: i64 = int("count", "cnt", 0).output().wiring("an output that only Maya's expressions and shaders read");
         /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh. Particles that are not included stay where they are, lose their velocity, age and die, and none are emitted. Other cloth collides with both. `enable` of the nucleus stops time, and keeps velocities and ages.
         IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::input_mesh");
     }
     "Time Attributes" {
         /// Time of the evaluation; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).elsewhere("the clock of the nucleus counts");
+        CURRENT_TIME: f64 = float("currentTime", "cti", 0.0).wiring("the clock of the nucleus counts");
         /// Frame of the initial state; driven by the nucleus.
-        START_FRAME: f64 = float("startFrame", "stf", 1.0).elsewhere("the clock of the nucleus counts");
+        START_FRAME: f64 = float("startFrame", "stf", 1.0).wiring("the clock of the nucleus counts");
     }
     "Dynamic Properties" {
         /// Factor on the forces of fields.
@@ -43,19 +43,19 @@ node_table! {
         /// Velocities of the particles.
         VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel").elsewhere("only particles have initial places of their own; cloth has `startPositions`");
         /// Accelerations of the particles.
-        ACCELERATION: Vec<[f64; 3]> = vectors("acceleration", "acc").elsewhere("an output that only Maya's expressions and shaders read");
+        ACCELERATION: Vec<[f64; 3]> = vectors("acceleration", "acc").wiring("an output that only Maya's expressions and shaders read");
         /// Positions of the particles in world space.
-        WORLD_POSITION: Vec<[f64; 3]> = vectors("worldPosition", "wps").output().elsewhere("an output that only Maya's expressions and shaders read");
+        WORLD_POSITION: Vec<[f64; 3]> = vectors("worldPosition", "wps").output().wiring("an output that only Maya's expressions and shaders read");
         /// Velocities of the particles in world space.
-        WORLD_VELOCITY: Vec<[f64; 3]> = vectors("worldVelocity", "wvl").output().elsewhere("an output that only Maya's expressions and shaders read");
+        WORLD_VELOCITY: Vec<[f64; 3]> = vectors("worldVelocity", "wvl").output().wiring("an output that only Maya's expressions and shaders read");
         /// Mass of each particle.
-        MASS: Vec<f64> = floats("mass", "mas").elsewhere("an output that only Maya's expressions and shaders read");
+        MASS: Vec<f64> = floats("mass", "mas").wiring("an output that only Maya's expressions and shaders read");
         /// Identifier of each particle.
-        PARTICLE_ID: Vec<f64> = floats("particleId", "id").output().elsewhere("an output that only Maya's expressions and shaders read");
+        PARTICLE_ID: Vec<f64> = floats("particleId", "id").output().wiring("an output that only Maya's expressions and shaders read");
         /// Time of birth of each particle.
-        BIRTH_TIME: Vec<f64> = floats("birthTime", "bt").output().elsewhere("an output that only Maya's expressions and shaders read");
+        BIRTH_TIME: Vec<f64> = floats("birthTime", "bt").output().wiring("an output that only Maya's expressions and shaders read");
         /// Age of each particle.
-        AGE: Vec<f64> = floats("age", "ag").output().elsewhere("an output that only Maya's expressions and shaders read");
+        AGE: Vec<f64> = floats("age", "ag").output().wiring("an output that only Maya's expressions and shaders read");
     }
     "Emission Attributes" {
         /// Particles die when they leave the volume that they were emitted from.
@@ -79,7 +79,7 @@ node_table! {
         /// Lifespan of the particles: constant, or the mean of random ones. Maya adds the attribute when it creates particles.
         LIFESPAN: f64 = float("lifespan", "lifespan", 1.0).min(0.0).unit("s").solved("nucleus_graph::compile::emission").extension();
         /// Lifespan of each particle.
-        FINAL_LIFESPAN_PP: Vec<f64> = floats("finalLifespanPP", "flp").output().elsewhere("an output that only Maya's expressions and shaders read");
+        FINAL_LIFESPAN_PP: Vec<f64> = floats("finalLifespanPP", "flp").output().wiring("an output that only Maya's expressions and shaders read");
         /// Seed of random lifespans.
         GENERAL_SEED: i64 = int("generalSeed", "gsd", 0).solved("nucleus_graph::compile::emission");
     }
@@ -99,9 +99,9 @@ node_table! {
     }
     "Classic memory caching" {
         /// Keeps frames in memory.
-        CACHE_DATA: bool = toggle("cacheData", "chd", false).elsewhere("only Maya's playback from memory uses it");
+        CACHE_DATA: bool = toggle("cacheData", "chd", false).wiring("only Maya's playback from memory uses it");
         /// Number of frames in memory.
-        CACHE_WIDTH: i64 = int("cacheWidth", "chw", 1).elsewhere("only Maya's playback from memory uses it");
+        CACHE_WIDTH: i64 = int("cacheWidth", "chw", 1).wiring("only Maya's playback from memory uses it");
     }
     "Classic collisions" {
         /// Largest number of collisions of a particle in a frame.
@@ -125,73 +125,73 @@ node_table! {
     }
     "Classic Particle" {
         /// Positions, as the input of ramps.
-        RAMP_POSITION: Vec<[f64; 3]> = vectors("rampPosition", "rps").elsewhere("Maya's evaluation keeps its state in it");
+        RAMP_POSITION: Vec<[f64; 3]> = vectors("rampPosition", "rps").wiring("Maya's evaluation keeps its state in it");
         /// Centroid of the particles.
-        CENTROID: [f64; 3] = vector("centroid", "ctd", [0.0, 0.0, 0.0], ["ctdx", "ctdy", "ctdz"]).output().elsewhere("an output that only Maya's expressions and shaders read");
+        CENTROID: [f64; 3] = vector("centroid", "ctd", [0.0, 0.0, 0.0], ["ctdx", "ctdy", "ctdz"]).output().wiring("an output that only Maya's expressions and shaders read");
         /// Positions at the previous evaluation.
-        LAST_POSITION: Vec<[f64; 3]> = vectors("lastPosition", "lpos").output().elsewhere("Maya's evaluation keeps its state in it");
+        LAST_POSITION: Vec<[f64; 3]> = vectors("lastPosition", "lpos").output().wiring("Maya's evaluation keeps its state in it");
         /// Velocities, as the input of ramps.
-        RAMP_VELOCITY: Vec<[f64; 3]> = vectors("rampVelocity", "rvl").elsewhere("Maya's evaluation keeps its state in it");
+        RAMP_VELOCITY: Vec<[f64; 3]> = vectors("rampVelocity", "rvl").wiring("Maya's evaluation keeps its state in it");
         /// Velocities at the previous evaluation.
-        LAST_VELOCITY: Vec<[f64; 3]> = vectors("lastVelocity", "lvel").output().elsewhere("Maya's evaluation keeps its state in it");
+        LAST_VELOCITY: Vec<[f64; 3]> = vectors("lastVelocity", "lvel").output().wiring("Maya's evaluation keeps its state in it");
         /// Accelerations, as the input of ramps.
-        RAMP_ACCELERATION: Vec<[f64; 3]> = vectors("rampAcceleration", "rac").elsewhere("Maya's evaluation keeps its state in it");
+        RAMP_ACCELERATION: Vec<[f64; 3]> = vectors("rampAcceleration", "rac").wiring("Maya's evaluation keeps its state in it");
         /// Centroid of the particles in world space.
-        WORLD_CENTROID: [f64; 3] = vector("worldCentroid", "wctn", [0.0, 0.0, 0.0], ["wctx", "wcty", "wctz"]).output().elsewhere("an output that only Maya's expressions and shaders read");
+        WORLD_CENTROID: [f64; 3] = vector("worldCentroid", "wctn", [0.0, 0.0, 0.0], ["wctx", "wcty", "wctz"]).output().wiring("an output that only Maya's expressions and shaders read");
         /// World positions at the previous evaluation.
-        LAST_WORLD_POSITION: Vec<[f64; 3]> = vectors("lastWorldPosition", "lwps").output().elsewhere("Maya's evaluation keeps its state in it");
+        LAST_WORLD_POSITION: Vec<[f64; 3]> = vectors("lastWorldPosition", "lwps").output().wiring("Maya's evaluation keeps its state in it");
         /// World velocities in object space.
-        WORLD_VELOCITY_IN_OBJECT_SPACE: Vec<[f64; 3]> = vectors("worldVelocityInObjectSpace", "wvo").elsewhere("Maya's evaluation keeps its state in it");
+        WORLD_VELOCITY_IN_OBJECT_SPACE: Vec<[f64; 3]> = vectors("worldVelocityInObjectSpace", "wvo").wiring("Maya's evaluation keeps its state in it");
         /// World velocities at the previous evaluation.
-        LAST_WORLD_VELOCITY: Vec<[f64; 3]> = vectors("lastWorldVelocity", "lwvl").output().elsewhere("Maya's evaluation keeps its state in it");
+        LAST_WORLD_VELOCITY: Vec<[f64; 3]> = vectors("lastWorldVelocity", "lwvl").output().wiring("Maya's evaluation keeps its state in it");
         /// Initial emitter identifiers of the particles.
-        EMITTER_ID0: Vec<f64> = floats("emitterId0", "eid0").output().elsewhere("an output that only Maya's expressions and shaders read");
+        EMITTER_ID0: Vec<f64> = floats("emitterId0", "eid0").output().wiring("an output that only Maya's expressions and shaders read");
         /// Starts from a frame of a cache of classic particles.
-        USE_STARTUP_CACHE: bool = toggle("useStartupCache", "usc", false).elsewhere("only Maya's playback from memory uses it");
+        USE_STARTUP_CACHE: bool = toggle("useStartupCache", "usc", false).wiring("only Maya's playback from memory uses it");
         /// Path of that cache.
-        STARTUP_CACHE_PATH: String = text("startupCachePath", "scp").elsewhere("only Maya's playback from memory uses it");
+        STARTUP_CACHE_PATH: String = text("startupCachePath", "scp").wiring("only Maya's playback from memory uses it");
         /// Frame of that cache.
-        STARTUP_CACHE_FRAME: i64 = int("startupCacheFrame", "scf", 0).elsewhere("only Maya's playback from memory uses it");
+        STARTUP_CACHE_FRAME: i64 = int("startupCacheFrame", "scf", 0).wiring("only Maya's playback from memory uses it");
         /// Positions kept in memory.
-        CACHED_POSITION: Vec<[f64; 3]> = vectors("cachedPosition", "cpos").output().elsewhere("only Maya's playback from memory uses it");
+        CACHED_POSITION: Vec<[f64; 3]> = vectors("cachedPosition", "cpos").output().wiring("only Maya's playback from memory uses it");
         /// Positions kept in memory, of the previous evaluation.
-        LAST_CACHED_POSITION: Vec<[f64; 3]> = vectors("lastCachedPosition", "lcps").output().elsewhere("only Maya's playback from memory uses it");
+        LAST_CACHED_POSITION: Vec<[f64; 3]> = vectors("lastCachedPosition", "lcps").output().wiring("only Maya's playback from memory uses it");
         /// World positions kept in memory.
-        CACHED_WORLD_POSITION: Vec<[f64; 3]> = vectors("cachedWorldPosition", "cwps").output().elsewhere("only Maya's playback from memory uses it");
+        CACHED_WORLD_POSITION: Vec<[f64; 3]> = vectors("cachedWorldPosition", "cwps").output().wiring("only Maya's playback from memory uses it");
         /// Centroid kept in memory, in world space.
-        CACHED_WORLD_CENTROID: [f64; 3] = vector("cachedWorldCentroid", "cwcn", [0.0, 0.0, 0.0], ["cwcx", "cwcy", "cwcz"]).output().elsewhere("only Maya's playback from memory uses it");
+        CACHED_WORLD_CENTROID: [f64; 3] = vector("cachedWorldCentroid", "cwcn", [0.0, 0.0, 0.0], ["cwcx", "cwcy", "cwcz"]).output().wiring("only Maya's playback from memory uses it");
         /// Velocities kept in memory.
-        CACHED_VELOCITY: Vec<[f64; 3]> = vectors("cachedVelocity", "cvel").output().elsewhere("only Maya's playback from memory uses it");
+        CACHED_VELOCITY: Vec<[f64; 3]> = vectors("cachedVelocity", "cvel").output().wiring("only Maya's playback from memory uses it");
         /// World velocities kept in memory.
-        CACHED_WORLD_VELOCITY: Vec<[f64; 3]> = vectors("cachedWorldVelocity", "cwvl").output().elsewhere("only Maya's playback from memory uses it");
+        CACHED_WORLD_VELOCITY: Vec<[f64; 3]> = vectors("cachedWorldVelocity", "cwvl").output().wiring("only Maya's playback from memory uses it");
         /// Whether the count is being computed.
-        COMPUTING_COUNT: bool = toggle("computingCount", "cmp", false).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        COMPUTING_COUNT: bool = toggle("computingCount", "cmp", false).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Masses kept in memory.
-        MASS_CACHE: Vec<f64> = floats("massCache", "masc").output().elsewhere("only Maya's playback from memory uses it");
+        MASS_CACHE: Vec<f64> = floats("massCache", "masc").output().wiring("only Maya's playback from memory uses it");
         /// Identifiers kept in memory.
-        ID_CACHE: Vec<f64> = floats("idCache", "idc").output().elsewhere("only Maya's playback from memory uses it");
+        ID_CACHE: Vec<f64> = floats("idCache", "idc").output().wiring("only Maya's playback from memory uses it");
         /// Identifiers in ascending order.
-        SORTED_ID: Vec<u32> = ints("sortedId", "sid").output().elsewhere("Maya's evaluation keeps its state in it");
+        SORTED_ID: Vec<u32> = ints("sortedId", "sid").output().wiring("Maya's evaluation keeps its state in it");
         /// Index of each sorted identifier.
-        ID_INDEX: Vec<u32> = ints("idIndex", "idix").output().elsewhere("Maya's evaluation keeps its state in it");
+        ID_INDEX: Vec<u32> = ints("idIndex", "idix").output().wiring("Maya's evaluation keeps its state in it");
         /// The same at the start frame.
         NEXT_ID0: i64 = int("nextId0", "nid0", 0).elsewhere("numbers go on after the largest of `particleId0`");
         /// Initial times of birth.
         BIRTH_TIME0: Vec<f64> = floats("birthTime0", "bt0").elsewhere("`age0` says how old particles are at the start");
         /// Times of birth kept in memory.
-        BIRTH_TIME_CACHE: Vec<f64> = floats("birthTimeCache", "btc").elsewhere("only Maya's playback from memory uses it");
+        BIRTH_TIME_CACHE: Vec<f64> = floats("birthTimeCache", "btc").wiring("only Maya's playback from memory uses it");
         /// Initial ages.
         AGE0: Vec<f64> = floats("age0", "ag0").solved("nucleus_graph::compile::particle_ramps");
         /// Ages kept in memory.
-        AGE_CACHE: Vec<f64> = floats("ageCache", "agc").output().elsewhere("only Maya's playback from memory uses it");
+        AGE_CACHE: Vec<f64> = floats("ageCache", "agc").output().wiring("only Maya's playback from memory uses it");
         /// Emitter of each particle.
-        EMITTER_ID: Vec<f64> = floats("emitterId", "eid").output().elsewhere("an output that only Maya's expressions and shaders read");
+        EMITTER_ID: Vec<f64> = floats("emitterId", "eid").output().wiring("an output that only Maya's expressions and shaders read");
         /// Whether collisions create events.
-        COLLISION_EVENTS: bool = toggle("collisionEvents", "cev", false).hidden().elsewhere("Maya sets it where there are events; the lists of events count");
+        COLLISION_EVENTS: bool = toggle("collisionEvents", "cev", false).hidden().wiring("Maya sets it where there are events; the lists of events count");
         /// Whether particles die.
-        DEATH: bool = toggle("death", "dth", false).hidden().elsewhere("Maya sets it where there are events; the lists of events count");
+        DEATH: bool = toggle("death", "dth", false).hidden().wiring("Maya sets it where there are events; the lists of events count");
         /// State of the random number generator.
-        RAND_STATE: [f64; 3] = vector("randState", "rnst", [0.0, 0.0, 0.0], ["rstx", "rsty", "rstz"]).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        RAND_STATE: [f64; 3] = vector("randState", "rnst", [0.0, 0.0, 0.0], ["rstx", "rsty", "rstz"]).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether the creation expression runs.
         EXECUTE_CREATION_EXPRESSION: bool = toggle("executeCreationExpression", "ece", false).hidden().elsewhere("Maya's expressions are not run; `creationExpression` and `runtimeExpression` of a nParticle are");
         /// Whether the expression before dynamics runs.
@@ -213,41 +213,41 @@ node_table! {
         /// Index of the particle that an expression runs for.
         CURRENT_PARTICLE: i64 = int("currentParticle", "xcp", 0).hidden().elsewhere("Maya's expressions are not run; `creationExpression` and `runtimeExpression` of a nParticle are");
         /// Number of particles that died in the previous evaluation.
-        DIED_LAST_TIME: i64 = int("diedLastTime", "dlt", 0).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        DIED_LAST_TIME: i64 = int("diedLastTime", "dlt", 0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Change of the count in the previous evaluation.
-        NET_EMITTED_LAST_TIME: i64 = int("netEmittedLastTime", "nlt", 0).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        NET_EMITTED_LAST_TIME: i64 = int("netEmittedLastTime", "nlt", 0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Index of the first newly emitted particle.
-        START_EMITTED_INDEX: i64 = int("startEmittedIndex", "sei", -1).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        START_EMITTED_INDEX: i64 = int("startEmittedIndex", "sei", -1).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Positions, for fields.
-        FIELD_DATA_POSITION: Vec<[f64; 3]> = vectors("fieldDataPosition", "fdp").output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        FIELD_DATA_POSITION: Vec<[f64; 3]> = vectors("fieldDataPosition", "fdp").output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Velocities, for fields.
-        FIELD_DATA_VELOCITY: Vec<[f64; 3]> = vectors("fieldDataVelocity", "fdv").output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        FIELD_DATA_VELOCITY: Vec<[f64; 3]> = vectors("fieldDataVelocity", "fdv").output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Masses, for fields.
-        FIELD_DATA_MASS: Vec<f64> = floats("fieldDataMass", "fdm").output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        FIELD_DATA_MASS: Vec<f64> = floats("fieldDataMass", "fdm").output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Length of the time step, for fields.
-        FIELD_DATA_DELTA_TIME: f64 = float("fieldDataDeltaTime", "fdt", 0.0).output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        FIELD_DATA_DELTA_TIME: f64 = float("fieldDataDeltaTime", "fdt", 0.0).output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Positions, for emitters.
-        EMITTER_DATA_POSITION: Vec<[f64; 3]> = vectors("emitterDataPosition", "edp").output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        EMITTER_DATA_POSITION: Vec<[f64; 3]> = vectors("emitterDataPosition", "edp").output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Velocities, for emitters.
-        EMITTER_DATA_VELOCITY: Vec<[f64; 3]> = vectors("emitterDataVelocity", "edv").output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        EMITTER_DATA_VELOCITY: Vec<[f64; 3]> = vectors("emitterDataVelocity", "edv").output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Length of the time step, for emitters.
-        EMITTER_DATA_DELTA_TIME: f64 = float("emitterDataDeltaTime", "edt", 0.0).output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        EMITTER_DATA_DELTA_TIME: f64 = float("emitterDataDeltaTime", "edt", 0.0).output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Reading it evaluates the node.
-        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden().elsewhere("Maya's evaluation keeps its state in it");
+        FORCE_DYNAMICS: bool = toggle("forceDynamics", "fdn", false).sink().hidden().wiring("Maya's evaluation keeps its state in it");
         /// The saved current time.
-        CURRENT_TIME_SAVE: f64 = float("currentTimeSave", "cts", 0.0).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        CURRENT_TIME_SAVE: f64 = float("currentTimeSave", "cts", 0.0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Time of this evaluation.
-        EVALUATION_TIME: f64 = float("evaluationTime", "eti", 0.0).elsewhere("Maya's evaluation keeps its state in it");
+        EVALUATION_TIME: f64 = float("evaluationTime", "eti", 0.0).wiring("Maya's evaluation keeps its state in it");
         /// Time of the scene.
-        CURRENT_SCENE_TIME: f64 = float("currentSceneTime", "cst", 1.0).elsewhere("Maya's evaluation keeps its state in it");
+        CURRENT_SCENE_TIME: f64 = float("currentSceneTime", "cst", 1.0).wiring("Maya's evaluation keeps its state in it");
         /// Time of the previous evaluation.
-        LAST_TIME_EVALUATED: f64 = float("lastTimeEvaluated", "lti", 0.0).output().elsewhere("Maya's evaluation keeps its state in it");
+        LAST_TIME_EVALUATED: f64 = float("lastTimeEvaluated", "lti", 0.0).output().wiring("Maya's evaluation keeps its state in it");
         /// Time of the scene at the previous evaluation.
-        LAST_SCENE_TIME: f64 = float("lastSceneTime", "lst", 0.0).elsewhere("Maya's evaluation keeps its state in it");
+        LAST_SCENE_TIME: f64 = float("lastSceneTime", "lst", 0.0).wiring("Maya's evaluation keeps its state in it");
         /// Time of the data kept in memory.
-        CACHED_TIME: f64 = float("cachedTime", "chti", 0.0).output().elsewhere("only Maya's playback from memory uses it");
+        CACHED_TIME: f64 = float("cachedTime", "chti", 0.0).output().wiring("only Maya's playback from memory uses it");
         /// Interval of scene time of this evaluation.
-        SCENE_TIME_STEP_SIZE: f64 = float("sceneTimeStepSize", "sts", 0.0).output().elsewhere("Maya's evaluation keeps its state in it");
+        SCENE_TIME_STEP_SIZE: f64 = float("sceneTimeStepSize", "sts", 0.0).output().wiring("Maya's evaluation keeps its state in it");
         /// Points of that geometry.
         INPUT_GEOMETRY_POINTS: Vec<[f64; 3]> = vectors("inputGeometryPoints", "igpt").output().elsewhere("only classic soft bodies use it; a nCloth stands for them");
         /// Space in which that geometry is read.
@@ -265,39 +265,39 @@ node_table! {
         /// Offset from a classic collider.
         COLLISION_OFFSET: f64 = float("collisionOffset", "cof", 0.0).elsewhere("only classic collisions use it; here objects of a nucleus collide");
         /// Number of events so far.
-        TOTAL_EVENT_COUNT: i64 = int("totalEventCount", "tec", 0).output().elsewhere("an output that only Maya's expressions and shaders read");
+        TOTAL_EVENT_COUNT: i64 = int("totalEventCount", "tec", 0).output().wiring("an output that only Maya's expressions and shaders read");
         /// Whether an event has happened.
-        EVENT_TEST: bool = toggle("eventTest", "evt", false).output().elsewhere("an output that only Maya's expressions and shaders read");
+        EVENT_TEST: bool = toggle("eventTest", "evt", false).output().wiring("an output that only Maya's expressions and shaders read");
         /// Number of events up to the previous evaluation.
-        LAST_TOTAL_EVENT_COUNT: i64 = int("lastTotalEventCount", "ltec", 0).elsewhere("Maya's evaluation keeps its state in it");
+        LAST_TOTAL_EVENT_COUNT: i64 = int("lastTotalEventCount", "ltec", 0).wiring("Maya's evaluation keeps its state in it");
         /// Seed of the random numbers of events.
         EVENT_SEED: i64 = int("eventSeed", "esd", 0).elsewhere("`particleId0` and the numbers of particles give the random draws of events");
         /// State of the random number generator of events.
-        EVENT_RAND_STATE: [f64; 3] = vector("eventRandState", "erst", [0.0, 0.0, 0.0], ["ersx", "ersy", "ersz"]).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        EVENT_RAND_STATE: [f64; 3] = vector("eventRandState", "erst", [0.0, 0.0, 0.0], ["ersx", "ersy", "ersz"]).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Debug drawing, for Maya's developers.
         DEBUG_DRAW: i64 = int("debugDraw", "dbd", 0).hidden().elsewhere("only Maya draws particles so");
         /// Number of events.
-        NUMBER_OF_EVENTS: i64 = int("numberOfEvents", "nev", 0).elsewhere("Maya's evaluation keeps its state in it");
+        NUMBER_OF_EVENTS: i64 = int("numberOfEvents", "nev", 0).wiring("Maya's evaluation keeps its state in it");
         /// Number of event names ever assigned.
-        EVENT_NAME_COUNT: i64 = int("eventNameCount", "enc", 0).elsewhere("Maya's evaluation keeps its state in it");
+        EVENT_NAME_COUNT: i64 = int("eventNameCount", "enc", 0).wiring("Maya's evaluation keeps its state in it");
         /// Inherits the colour of the emitter.
         INHERIT_COLOR: bool = toggle("inheritColor", "inc", false).elsewhere("only Maya draws particles so");
         /// Whether dynamics are evaluated.
-        DO_DYNAMICS: bool = toggle("doDynamics", "ddy", false).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        DO_DYNAMICS: bool = toggle("doDynamics", "ddy", false).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether emission is evaluated.
-        DO_EMISSION: bool = toggle("doEmission", "dem", false).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        DO_EMISSION: bool = toggle("doEmission", "dem", false).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether emission is always evaluated.
-        FORCE_EMISSION: bool = toggle("forceEmission", "fem", false).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        FORCE_EMISSION: bool = toggle("forceEmission", "fem", false).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether ages are updated.
-        DO_AGE: bool = toggle("doAge", "dag", false).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        DO_AGE: bool = toggle("doAge", "dag", false).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Time of the last update.
-        AGES_LAST_DONE: f64 = float("agesLastDone", "agld", 0.0).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        AGES_LAST_DONE: f64 = float("agesLastDone", "agld", 0.0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Time of the last evaluation.
-        TIME_LAST_COMPUTED: f64 = float("timeLastComputed", "tlc", 0.0).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        TIME_LAST_COMPUTED: f64 = float("timeLastComputed", "tlc", 0.0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether its parent has moved.
-        PARENT_MATRIX_DIRTY: bool = toggle("parentMatrixDirty", "pmd", false).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        PARENT_MATRIX_DIRTY: bool = toggle("parentMatrixDirty", "pmd", false).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Version of the saved node.
-        NEW_FILE_FORMAT: i64 = int("newFileFormat", "nff", 0).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        NEW_FILE_FORMAT: i64 = int("newFileFormat", "nff", 0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Draws particles from back to front.
         DEPTH_SORT: bool = toggle("depthSort", "ds", false).elsewhere("only Maya draws particles so");
         /// Whether clouds are drawn without an axis.
@@ -305,29 +305,29 @@ node_table! {
         /// Whether only the direction of velocities is used.
         NORMALIZE_VELOCITY: bool = toggle("normalizeVelocity", "nvl", false).elsewhere("only Maya draws particles so");
         /// Whether a cache of another type is read.
-        USE_CUSTOM_CACHE: bool = toggle("useCustomCache", "ucc", false).elsewhere("only Maya's playback from memory uses it");
+        USE_CUSTOM_CACHE: bool = toggle("useCustomCache", "ucc", false).wiring("only Maya's playback from memory uses it");
     }
     "Internal" {
         /// Sum of the forces of all fields, per particle.
-        FORCE: Vec<[f64; 3]> = vectors("force", "frc").output().hidden().elsewhere("an output that only Maya's expressions and shaders read");
+        FORCE: Vec<[f64; 3]> = vectors("force", "frc").output().hidden().wiring("an output that only Maya's expressions and shaders read");
         /// Identifier of the next particle.
-        NEXT_ID: i64 = int("nextId", "nid", 0).hidden().elsewhere("Maya's evaluation keeps its state in it");
+        NEXT_ID: i64 = int("nextId", "nid", 0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether the largest number of particles is reached, which stops emitters.
-        IS_FULL: bool = toggle("isFull", "ifl", false).output().hidden().elsewhere("Maya's evaluation keeps its state in it");
+        IS_FULL: bool = toggle("isFull", "ifl", false).output().hidden().wiring("Maya's evaluation keeps its state in it");
         /// Interval of this evaluation, for emitters.
-        TIME_STEP_SIZE: f64 = float("timeStepSize", "tss", 0.0).output().hidden().elsewhere("Maya's evaluation keeps its state in it");
+        TIME_STEP_SIZE: f64 = float("timeStepSize", "tss", 0.0).output().hidden().wiring("Maya's evaluation keeps its state in it");
         /// The start frame as a time, for emitters.
-        START_TIME: f64 = float("startTime", "stt", 0.0).output().hidden().elsewhere("Maya's evaluation keeps its state in it");
+        START_TIME: f64 = float("startTime", "stt", 0.0).output().hidden().wiring("Maya's evaluation keeps its state in it");
     }
     "Connections" {
         /// Forces of the fields, one list per field.
-        INPUT_FORCE: Plugged = plug("inputForce", "ifc", Data::Vectors).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        INPUT_FORCE: Plugged = plug("inputForce", "ifc", Data::Vectors).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Transform at the previous evaluation.
-        LAST_WORLD_MATRIX: Plugged = plug("lastWorldMatrix", "lwm", Data::Matrix).output().elsewhere("Maya's evaluation keeps its state in it");
+        LAST_WORLD_MATRIX: Plugged = plug("lastWorldMatrix", "lwm", Data::Matrix).output().wiring("Maya's evaluation keeps its state in it");
         /// Map from identifiers to indices.
-        ID_MAPPING: Plugged = plug("idMapping", "idm", Data::Bundle).output().elsewhere("Maya's evaluation keeps its state in it");
+        ID_MAPPING: Plugged = plug("idMapping", "idm", Data::Bundle).output().wiring("Maya's evaluation keeps its state in it");
         /// Particles that this object emits.
-        EMISSION: Plugged = plug("emission", "emt", Data::NewParticles).output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        EMISSION: Plugged = plug("emission", "emt", Data::NewParticles).output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Particles from emitters.
         NEW_PARTICLES: Plugged = plug("newParticles", "npt", Data::NewParticles).multi().sink().solved("nucleus_graph::compile::emission");
         /// Inputs of expressions.
@@ -335,9 +335,9 @@ node_table! {
         /// Outputs of expressions.
         OUTPUT: Plugged = plug("output", "xo", Data::Bundle).multi().output().elsewhere("Maya's expressions are not run; `creationExpression` and `runtimeExpression` of a nParticle are");
         /// Data of the particles for fields.
-        FIELD_DATA: Plugged = plug("fieldData", "fd", Data::FieldData).output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        FIELD_DATA: Plugged = plug("fieldData", "fd", Data::FieldData).output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Data of the particles for emitters.
-        EMITTER_DATA: Plugged = plug("emitterData", "ed", Data::Bundle).output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        EMITTER_DATA: Plugged = plug("emitterData", "ed", Data::Bundle).output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Geometry that a soft body is made from.
         INPUT_GEOMETRY: Plugged = plug("inputGeometry", "igeo", Data::Mesh).elsewhere("only classic soft bodies use it; a nCloth stands for them");
         /// Geometry that a soft body moves.
@@ -351,7 +351,7 @@ node_table! {
         /// Surface of a classic collider.
         COLLISION_GEOMETRY: Plugged = plug("collisionGeometry", "cge", Data::Mesh).elsewhere("only classic collisions use it; here objects of a nucleus collide");
         /// Collisions of this evaluation.
-        COLLISION_RECORDS: Plugged = plug("collisionRecords", "crc", Data::Bundle).output().elsewhere("an output that only Maya's expressions and shaders read");
+        COLLISION_RECORDS: Plugged = plug("collisionRecords", "crc", Data::Bundle).output().wiring("an output that only Maya's expressions and shaders read");
         /// Particles that an event emits into.
         EVENT_TARGET: Plugged = plug("eventTarget", "etg", Data::Message).multi().elsewhere("events are counted through, and `eventParticles` names what they emit into");
         /// Names of events.
@@ -375,23 +375,23 @@ node_table! {
         /// Data for instanced geometry.
         INSTANCE_DATA: Plugged = plug("instanceData", "idt", Data::Bundle).multi().elsewhere("only Maya draws particles so");
         /// Fields that belong to it.
-        FIELD_CONNECTIONS: Plugged = plug("fieldConnections", "fc", Data::Message).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        FIELD_CONNECTIONS: Plugged = plug("fieldConnections", "fc", Data::Message).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Colliders that belong to it.
         COLLISION_CONNECTIONS: Plugged = plug("collisionConnections", "cc", Data::Message).multi().elsewhere("only classic collisions use it; here objects of a nucleus collide");
         /// Nodes that refer to it.
-        CONNECTIONS_TO_ME: Plugged = plug("connectionsToMe", "ct", Data::Message).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        CONNECTIONS_TO_ME: Plugged = plug("connectionsToMe", "ct", Data::Message).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Helper nodes that it owns.
-        AUXILIARIES_OWNED: Plugged = plug("auxiliariesOwned", "ao", Data::Message).elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        AUXILIARIES_OWNED: Plugged = plug("auxiliariesOwned", "ao", Data::Message).wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Emitters that belong to it.
-        EMITTER_CONNECTIONS: Plugged = plug("emitterConnections", "ec", Data::Message).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        EMITTER_CONNECTIONS: Plugged = plug("emitterConnections", "ec", Data::Message).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Stands for the node itself.
-        SHAPE_NAME_MSG: Plugged = plug("shapeNameMsg", "snmg", Data::Message).elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        SHAPE_NAME_MSG: Plugged = plug("shapeNameMsg", "snmg", Data::Message).wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Values that shaders read for each particle.
         SAMPLER_PER_PARTICLE_DATA: Plugged = plug("samplerPerParticleData", "spd", Data::Bundle).output().elsewhere("only Maya draws particles so");
         /// Settings of fields per particle.
-        PP_FIELD_DATA: Plugged = plug("ppFieldData", "ppfd", Data::FieldSettings).multi().output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        PP_FIELD_DATA: Plugged = plug("ppFieldData", "ppfd", Data::FieldSettings).multi().output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// The same, for fields that the particles own.
-        OWNER_PP_FIELD_DATA: Plugged = plug("ownerPPFieldData", "opfd", Data::FieldSettings).multi().output().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        OWNER_PP_FIELD_DATA: Plugged = plug("ownerPPFieldData", "opfd", Data::FieldSettings).multi().output().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Positions after deformers.
         DEFORMED_POSITION: Plugged = plug("deformedPosition", "dpos", Data::Mesh).elsewhere("only classic soft bodies use it; a nCloth stands for them");
     }

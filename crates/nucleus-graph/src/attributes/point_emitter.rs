@@ -43,7 +43,7 @@ node_table! {
         /// Initial speed along the normal of a surface or curve.
         NORMAL_SPEED: f64 = float("normalSpeed", "nspd", 1.0).soft(0.0, 10.0).solved("nucleus_graph::compile::emission");
         /// Time of the evaluation; driven by `time1.outTime`.
-        CURRENT_TIME: f64 = float("currentTime", "ct", 0.0).elsewhere("the clock of the nucleus counts");
+        CURRENT_TIME: f64 = float("currentTime", "ct", 0.0).wiring("the clock of the nucleus counts");
         /// Rate at each point of the owner.
         RATE_PP: Vec<f64> = floats("ratePP", "rpp").sink().elsewhere("no emitter emits from the points of another object");
         /// Identifiers of the owner's particles.
@@ -59,15 +59,15 @@ node_table! {
         /// Inverts that texture.
         EMIT_FROM_DARK: bool = toggle("emitFromDark", "efd", false).solved("nucleus_graph::compile::emission").fixed();
         /// Sets the colour of new particles.
-        INHERIT_COLOR: bool = toggle("inheritColor", "inhc", false).elsewhere("the ramps of the nParticle give its colour and opacity");
+        INHERIT_COLOR: bool = toggle("inheritColor", "inhc", false).wiring("the ramps of the nParticle give its colour and opacity");
         /// Sets the opacity of new particles.
-        INHERIT_OPACITY: bool = toggle("inheritOpacity", "inho", false).elsewhere("the ramps of the nParticle give its colour and opacity");
+        INHERIT_OPACITY: bool = toggle("inheritOpacity", "inho", false).wiring("the ramps of the nParticle give its colour and opacity");
         /// Inverts that opacity.
-        INVERT_OPACITY: bool = toggle("invertOpacity", "invo", false).elsewhere("the ramps of the nParticle give its colour and opacity");
+        INVERT_OPACITY: bool = toggle("invertOpacity", "invo", false).wiring("the ramps of the nParticle give its colour and opacity");
         /// Uses luminance as opacity.
-        USE_LUMINANCE: bool = toggle("useLuminance", "usel", false).elsewhere("the ramps of the nParticle give its colour and opacity");
+        USE_LUMINANCE: bool = toggle("useLuminance", "usel", false).wiring("the ramps of the nParticle give its colour and opacity");
         /// Colour of new particles.
-        PARTICLE_COLOR: [f64; 3] = vector("particleColor", "pc", [0.5, 0.5, 0.5], ["pcr", "pcg", "pcb"]).min(0.0).max(1.0).elsewhere("the ramps of the nParticle give its colour and opacity");
+        PARTICLE_COLOR: [f64; 3] = vector("particleColor", "pc", [0.5, 0.5, 0.5], ["pcr", "pcg", "pcb"]).min(0.0).max(1.0).wiring("the ramps of the nParticle give its colour and opacity");
         /// Shape of the emission volume.
         VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "Cube"), (1, "Sphere"), (2, "Cylinder"), (3, "Cone"), (4, "Torus")]).solved("nucleus_graph::compile::emission");
         /// Offset of the volume from the emitter.
@@ -97,24 +97,24 @@ node_table! {
     }
     "Connections" {
         /// Time since the last evaluation.
-        DELTA_TIME_CYCLE: Plugged = plug("deltaTimeCycle", "dtc", Data::Number).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        DELTA_TIME_CYCLE: Plugged = plug("deltaTimeCycle", "dtc", Data::Number).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Share of the emitter's velocity that particles inherit; driven by the particles.
-        INHERIT_FACTOR: Plugged = plug("inheritFactor", "inh", Data::Number).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        INHERIT_FACTOR: Plugged = plug("inheritFactor", "inh", Data::Number).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Whether the largest number of particles is reached; driven by the particles.
-        IS_FULL: Plugged = plug("isFull", "full", Data::Number).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        IS_FULL: Plugged = plug("isFull", "full", Data::Number).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Start time; driven by the particles.
-        START_TIME: Plugged = plug("startTime", "stt", Data::Number).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        START_TIME: Plugged = plug("startTime", "stt", Data::Number).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Length of the time step; driven by the particles.
-        DELTA_TIME: Plugged = plug("deltaTime", "dt", Data::Number).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        DELTA_TIME: Plugged = plug("deltaTime", "dt", Data::Number).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Fraction of a particle carried over to the next step.
-        EMIT_COUNT_REMAINDER: Plugged = plug("emitCountRemainder", "ecr", Data::Numbers).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        EMIT_COUNT_REMAINDER: Plugged = plug("emitCountRemainder", "ecr", Data::Numbers).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// Surface or curve over the step.
-        SWEPT_GEOMETRY: Plugged = plug("sweptGeometry", "swge", Data::Bundle).elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        SWEPT_GEOMETRY: Plugged = plug("sweptGeometry", "swge", Data::Bundle).wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// New particles.
         OUTPUT: Plugged = plug("output", "ot", Data::NewParticles).multi().output().solved("nucleus_graph::compile::emission");
         /// Seed of the random numbers; driven by the particles.
-        SEED: Plugged = plug("seed", "sd", Data::Number).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        SEED: Plugged = plug("seed", "sd", Data::Number).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
         /// State of the random number generator.
-        RAND_STATE: Plugged = plug("randState", "rst", Data::Vector).multi().elsewhere("Maya's wiring: what it carries is read from the nodes directly");
+        RAND_STATE: Plugged = plug("randState", "rst", Data::Vector).multi().wiring("Maya's wiring: what it carries is read from the nodes directly");
     }
 }

@@ -59,8 +59,28 @@ pub enum Effect {
     /// Without effect in Maya: setting it is a warning.
     Never,
     /// Without effect here, for this reason; Maya uses it outside its solver, or another attribute stands for it.
-    /// Setting it is a warning.
+    /// Setting it is a warning, and so is connecting it.
     Elsewhere(&'static str),
+    /// Without effect here, for this reason: Maya's nodes hand it on, and its state is found otherwise. Setting it is a warning;
+    /// a connection of it loses nothing.
+    Wiring(&'static str),
+}
+
+impl Effect {
+    /// Why an attribute of a Maya scene has no effect, as the end of a sentence; `None` if it is solved.
+    pub fn lack(self) -> Option<String> {
+        match self {
+            Self::Solved(_) => None,
+            Self::NotYet => Some("has no effect yet".to_owned()),
+            Self::Never => Some("has no effect: nothing uses it, not even in Maya".to_owned()),
+            Self::Elsewhere(reason) | Self::Wiring(reason) => Some(format!("has no effect: {reason}")),
+        }
+    }
+
+    /// The same for a connection to it.
+    pub fn lack_of_connection(self) -> Option<String> {
+        if matches!(self, Self::Wiring(_)) { None } else { self.lack() }
+    }
 }
 
 /// Prints the name.

@@ -190,7 +190,7 @@ impl Attribute {
             Effect::Solved(_) => None,
             Effect::NotYet => Some("has no effect yet"),
             Effect::Never => Some("has no effect: nothing uses it, not even in Maya"),
-            Effect::Elsewhere(reason) => Some(reason),
+            Effect::Elsewhere(reason) | Effect::Wiring(reason) => Some(reason),
         }
     }
 }

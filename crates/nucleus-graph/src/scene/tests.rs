@@ -130,6 +130,27 @@ fn a_setting_without_effect_is_a_warning_with_the_reason_at_its_place() {
     assert_eq!(warnings[0].message, "`lifespanRandom` of `c` has no effect on such a node");
 }
 
+// EVIDENCE: N3.1-10  a connection that is not supported gives a warning too
+#[test]
+fn a_connection_without_effect_is_a_warning_and_one_of_maya_s_wiring_is_none() {
+    let nodes = r#""p": nParticle(position0: [(1, 0, 0)]), "q": nParticle(position0: [(0, 1, 0)]),
+        "f": radialField(target: "q", magnitude: 5)"#;
+    let of_wire = |from: &str, to: &str| {
+        let text = with_nodes(nodes);
+        let end = text.rfind(')').expect("a scene");
+        let text = format!(
+            r#"{}, connections: [("{from}", "{to}")])"#,
+            text[..end].trim_end().trim_end_matches(',')
+        );
+        let (_, warnings) = read_scene_text(&text, Path::new("test.ron")).expect("a valid scene");
+        warnings.into_iter().map(|warning| warning.message).collect::<Vec<_>>()
+    };
+    let reason = "fields stand for themselves: none comes from the points of another object";
+    let expected = format!("`f.ownerPosData` has no effect: {reason}");
+    assert_eq!(of_wire("p.worldPosition", "f.ownerPosData"), [expected]);
+    assert_eq!(of_wire("p.worldPosition", "f.inputPositions"), Vec::<String>::new());
+}
+
 #[test]
 fn a_byte_order_mark_is_ignored() {
     let plain = scene(SHEET);

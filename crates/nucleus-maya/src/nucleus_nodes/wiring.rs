@@ -106,6 +106,9 @@ impl Importer<'_> {
 
     /// Connects two plugs. A connection that a creation command has already made is no omission.
     pub(super) fn join(&mut self, from: Plug, to: Plug) {
+        if let Some(lack) = to.attribute.effect.lack_of_connection() {
+            return self.omissions.add(self.graph.describe(to), Cause::NoEffect(lack));
+        }
         match self.graph.connect(from, to) {
             Ok(()) | Err(GraphError::InputTaken { .. }) => {}
             Err(error) => {

@@ -466,6 +466,24 @@ fn the_pivot_of_an_emitter_is_part_of_its_placement_and_no_omission() {
 }
 
 #[test]
+fn a_field_or_an_emitter_that_particles_own_is_an_omission() {
+    let others = "createNode transform -n \"q\";\ncreateNode nParticle -n \"qShape\" -p \"q\";\n\
+        connectAttr \"qShape.cust\" \"n.niao[1]\";\nconnectAttr \"qShape.stst\" \"n.nias[1]\";\n\
+        createNode radialField -n \"f\"; connectAttr \"f.of[0]\" \"qShape.ifc[0]\";\n\
+        createNode pointEmitter -n \"e\"; connectAttr \"e.ot[0]\" \"qShape.npt[0]\";\n";
+    let free = read(&format!("{PARTICLES}{others}"));
+    assert!(free.imported.omissions.is_empty(), "{}", free.imported.omissions);
+    for node in ["f", "e"] {
+        let owned = format!(
+            "connectAttr \"pShape.wps\" \"{node}.opd\"; connectAttr \"pShape.wvl\" \"{node}.ovd\";\n"
+        );
+        let owned = read(&format!("{PARTICLES}{others}{owned}"));
+        let what = format!("{node}.ownerPosData");
+        assert!(owned.omits(&what, "points of another object"), "{}", owned.imported.omissions);
+    }
+}
+
+#[test]
 fn instances_are_omissions() {
     let parent =
         "createNode transform -n \"second\";\nparent -s -nc -r -add \"|sheet|sheetShape\" \"second\";\n";

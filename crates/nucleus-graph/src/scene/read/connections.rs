@@ -92,7 +92,12 @@ impl Connections<'_> {
             }
             self.replace_implicit(graph, to, &explicit);
             match graph.connect(from, to) {
-                Ok(()) => explicit.push(to),
+                Ok(()) => {
+                    explicit.push(to);
+                    if let Some(lack) = to.attribute.effect.lack_of_connection() {
+                        findings.warning(span, format!("`{}` {lack}", graph.describe(to)));
+                    }
+                }
                 Err(error) => {
                     findings.error(span, error.to_string());
                 }

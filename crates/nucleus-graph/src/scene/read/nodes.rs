@@ -320,14 +320,12 @@ impl NodeReader<'_, '_> {
         if let Err(error) = self.graph.set(self.id, row, setting) {
             self.findings.error(&word.span, error.to_string());
         }
-        let lacks = match row.effect {
-            Effect::Solved(_) if self.declaration.node_type.has_no_use_for(row) => {
+        let lacks = match row.effect.lack() {
+            Some(lack) => lack,
+            None if self.declaration.node_type.has_no_use_for(row) => {
                 "has no effect on such a node".to_owned()
             }
-            Effect::Solved(_) => return,
-            Effect::NotYet => "has no effect yet".to_owned(),
-            Effect::Never => "has no effect: nothing uses it, not even in Maya".to_owned(),
-            Effect::Elsewhere(reason) => format!("has no effect: {reason}"),
+            None => return,
         };
         self.findings.warning(&word.span, format!("`{}` of `{}` {lacks}", row.name, self.declaration.name));
     }
