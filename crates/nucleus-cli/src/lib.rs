@@ -22,6 +22,7 @@ mod diagnostics;
 mod figures;
 mod files;
 mod initial_state;
+mod object_names;
 mod options;
 mod output;
 mod process;

@@ -2,7 +2,7 @@
 
 mod sample;
 
-use nucleus_cache::Playback;
+use nucleus_cache::{ObjectKind, Playback};
 use nucleus_view::{Background, Bounds, Camera, Film, GifWriter, Ground, Image, Style, ViewError, draw};
 use sample::{FRAMES, Sample};
 
@@ -78,6 +78,33 @@ fn the_automatic_camera_crops_neither_the_cloth_nor_the_colliders_near_it() {
         !has_margin(&film.picture(12).unwrap(), &background),
         "a camera that frames the cloth crops a collider"
     );
+}
+
+#[test]
+fn a_hidden_object_is_neither_drawn_nor_framed_and_the_others_keep_their_colours() {
+    let (_folder, mut cache) = recorded(Sample::default());
+    let names: Vec<(String, ObjectKind)> =
+        cache.objects().iter().map(|object| (object.name.clone(), object.kind)).collect();
+    let named = |kind: ObjectKind| -> Vec<String> {
+        names.iter().filter(|(_, own)| *own == kind).map(|(name, _)| name.clone()).collect()
+    };
+    let (cloths, colliders) = (named(ObjectKind::Cloth), named(ObjectKind::Collider));
+    let ground = Ground::None;
+    let mut seen = |hidden: &[String]| {
+        let style = Style { ground, hidden: hidden.to_vec(), ..small() };
+        let mut film = Film::of(&mut cache, 1, style).unwrap();
+        (film.camera(), film.picture(12).unwrap())
+    };
+    let reds = |picture: &Image| {
+        let pixels = (0..96 * 54).map(|k| picture.pixel(k % 96, k / 96));
+        pixels.filter(|[red, green, _]| *red > 80 && *red / 2 > *green).count()
+    };
+    let [whole, cloth, collider, nothing] =
+        [&[][..], &colliders, &cloths, &[&cloths[..], &colliders].concat()].map(&mut seen);
+    let background = draw(&[], &Camera::default(), &Style { ground, ..small() });
+    assert!(reds(&whole.1) > 0 && reds(&cloth.1) > reds(&whole.1), "nearer without the colliders");
+    assert!(reds(&collider.1) == 0 && collider.1 != background);
+    assert!(nothing.1 == background && nothing.0 == whole.0, "the camera of all, where none is drawn");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use nucleus_cache::Playback;
 use nucleus_view::{Background, Camera, Colouring, Film, GifWriter, Image, Style};
 
 use super::film::{self, Interrupted, OutputKind};
-use crate::diagnostics::unknown;
+use crate::object_names;
 use crate::options::{self, FrameRange};
 use crate::process::Outcome;
 use crate::progress::ShareProgress;
@@ -65,7 +65,11 @@ pub struct Render {
     /// What is behind the objects: `studio`, a colour `#rrggbb`, or `none` for a still with opacities and without a floor.
     #[arg(long, value_name = "BACKGROUND", default_value = "studio", value_parser = parse_background)]
     background: Background,
-    /// Colour of an object, `cloth=#aa3322`; may be given several times.
+    /// An object that is not drawn, by its name or a pattern with `*` and `?`; may be given several times. It casts no shadow,
+    /// and the automatic camera does not frame it.
+    #[arg(long, value_name = "NAME")]
+    hide: Vec<String>,
+    /// Colour of an object, `cloth=#aa3322`, or of several, `drop*=#3366aa`; may be given several times.
     #[arg(long, value_name = "NAME=COLOUR", value_parser = parse_tint)]
     tint: Vec<(String, [f32; 3])>,
     /// Samples along each side of a pixel, for smooth edges.
@@ -139,10 +143,6 @@ impl Render {
             !self.surface || files::has_particles(cache),
             "`--surface` is for particles, and the cache has none"
         );
-        for (name, _) in &self.tint {
-            let known = || cache.objects().iter().map(|object| object.name.as_str());
-            ensure!(known().any(|known| known == name), "`--tint`: {}", unknown("object", name, known()));
-        }
         Ok(())
     }
 
@@ -151,7 +151,7 @@ impl Render {
         let frame = cache.time_samples()[moment].frame;
         // Camera and floor are those of the whole run, estimated from 24 of its frames.
         let (every, scene_camera) = (cache.time_samples().len() / 24, self.scene_camera(cache)?);
-        let film = Film::of(cache, every, self.style(out))?;
+        let film = Film::of(cache, every, self.style(cache, out)?)?;
         let camera = self.with_options(film.camera())?;
         film::picture(&look_through(film.seen_by(camera), scene_camera).moment(moment)?, out)?;
         Ok(format!("frame {frame} in {}", sized(out)?))
@@ -160,7 +160,7 @@ impl Render {
     fn film(&self, cache: &mut Playback, out: &Path, kind: OutputKind) -> Result<String> {
         let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
         let scene_camera = self.scene_camera(cache)?;
-        let mut film = Film::of(cache, self.every.unwrap_or(1) as usize, self.style(out))?;
+        let mut film = Film::of(cache, self.every.unwrap_or(1) as usize, self.style(cache, out)?)?;
         if let Some(frames) = self.frames {
             let (first, last) = frames
                 .within(start)
@@ -191,22 +191,31 @@ impl Render {
         })
     }
 
-    fn style(&self, out: &Path) -> Style {
+    fn style(&self, cache: &Playback, out: &Path) -> Result<Style> {
         let colouring = match self.strain {
             Some(full_scale) => Colouring::Strain { full_scale },
             None => Colouring::Objects,
         };
-        Style {
+        let (mut hidden, mut tints) = (Vec::new(), Vec::new());
+        for pattern in &self.hide {
+            hidden.extend(object_names::matching(cache, "--hide", pattern)?);
+        }
+        for (pattern, colour) in &self.tint {
+            let names = object_names::matching(cache, "--tint", pattern)?;
+            tints.extend(names.into_iter().map(|name| (name, *colour)));
+        }
+        Ok(Style {
             size: self.size,
             colouring,
             wireframe: self.wireframe,
             surfaces: self.surface,
             background: self.background,
-            tints: self.tint.clone(),
+            tints,
+            hidden,
             samples: self.samples,
             keeps_linear: film::is_exr(out),
             ..Style::default()
-        }
+        })
     }
 
     /// The requested camera of the scene, else its first one.

@@ -164,6 +164,22 @@ fn a_still_may_have_opacities_a_colour_behind_it_and_coloured_objects() {
 }
 
 #[test]
+fn a_pattern_hides_or_tints_every_object_that_it_matches() {
+    let folder = folder();
+    cache(folder.path());
+    let picture = |more: &[&str]| {
+        let all =
+            [&["render", "fall.mcap", "--size", "64x48", "--samples", "1", "-o", "a.png"], more].concat();
+        let output = nucleus(folder.path(), &all);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        fs::read(folder.path().join("a.png")).unwrap()
+    };
+    let [whole, hidden, tinted] = [&[][..], &["--hide", "she*"], &["--tint", "?heet=#0000ff"]].map(picture);
+    assert!(whole != hidden && whole != tinted && hidden != tinted);
+    assert!(hidden == picture(&["--hide", "sheet"]) && tinted == picture(&["--tint", "sheet=#0000ff"]));
+}
+
+#[test]
 fn a_picture_never_replaces_the_cache_that_it_shows() {
     let folder = folder();
     let path = cache(folder.path());
@@ -182,6 +198,8 @@ fn an_option_without_effect_is_refused() {
     cache(folder.path());
     for (options, words) in [
         (&["--tint", "shet=#00ff00"][..], "there is no object `shet`; did you mean `sheet`?"),
+        (&["--hide", "shet"], "`--hide`: there is no object `shet`; did you mean `sheet`?"),
+        (&["--hide", "x*"], "`--hide`: there is no object `x*`; there are `sheet`"),
         (&["--frames", "1..4"], "`--frames` is for several frames, and the output is a still: `--animate`"),
         (&["--every", "2"], "`--every` is for several frames"),
         (&["--animate", "-o", "a.exr"], "`--animate` is for several frames"),

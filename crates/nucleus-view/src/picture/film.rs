@@ -62,13 +62,13 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         let last = cache.time_samples().len() - 1;
         let surveyed: Vec<usize> =
             moments.iter().copied().filter(|&moment| moment != last).chain([last]).collect();
-        let Survey { framed, stage, floor } = survey(cache, &surveyed)?;
+        let Survey { framed, stage, floor } = survey(cache, &surveyed, &style)?;
         let camera = Camera::framing(&framed, style.size);
         let is_ground_plane = style.ground == Ground::Below;
         let ground = if is_ground_plane { floor } else { style.ground };
         let style = Style { ground, ..style };
         let (scene_camera, fragments) = (None, Vec::new());
-        let spacings = spacings(cache, style.surfaces).map_err(|source| ViewError::Read { source })?;
+        let spacings = spacings(cache, &style).map_err(|source| ViewError::Read { source })?;
         Ok(Self { cache, moments, camera, scene_camera, stage, style, is_ground_plane, spacings, fragments })
     }
 
@@ -228,7 +228,11 @@ struct Survey {
 }
 
 /// Surveys a run at these recorded times. Damaged frames are left out, unless all are: others can be drawn without them.
-fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<Survey, ViewError> {
+fn survey<R: Read + Seek>(
+    cache: &mut Playback<R>,
+    moments: &[usize],
+    style: &Style,
+) -> Result<Survey, ViewError> {
     let [mut framed, mut stage, mut all] = [Bounds::default(); 3];
     let mut damaged = None;
     for moment in moments {
@@ -240,7 +244,7 @@ fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<
             states => states?,
         };
         let objects = objects(cache, *moment, &states)?;
-        framed.merge(&Bounds::to_frame(&objects));
+        framed.merge(&Bounds::to_frame(&drawn(&objects, style)));
         stage.merge(&Bounds::of_interest(&objects));
         objects.iter().for_each(|object| all.include_object(object));
     }
@@ -248,6 +252,12 @@ fn survey<R: Read + Seek>(cache: &mut Playback<R>, moments: &[usize]) -> Result<
         return Err(error);
     }
     Ok(Survey { framed, stage, floor: Ground::At(all.floor_below(&framed, &stage)) })
+}
+
+/// The objects that are drawn; all if none is.
+fn drawn<'a>(objects: &[Object<'a>], style: &Style) -> Vec<Object<'a>> {
+    let drawn: Vec<Object> = objects.iter().filter(|object| style.shows(object.name)).copied().collect();
+    if drawn.is_empty() { objects.to_vec() } else { drawn }
 }
 
 /// An object at a recorded time.
@@ -267,13 +277,15 @@ impl ObjectState {
     }
 }
 
-/// The spacing of the particles of each object; `None` for other objects, and where no surface is wanted.
+/// The spacing of the particles of each object; `None` for other objects, and where no surface is drawn.
 fn spacings<R: Read + Seek>(
     cache: &mut Playback<R>,
-    is_wanted: bool,
+    style: &Style,
 ) -> Result<Vec<Option<f32>>, nucleus_cache::ReadError> {
-    let objects = 0..cache.objects().len();
-    objects.map(|object| if is_wanted { cache.particle_spacing(object) } else { Ok(None) }).collect()
+    let is_drawn: Vec<bool> =
+        cache.objects().iter().map(|object| style.surfaces && style.shows(&object.name)).collect();
+    let spacing = |(object, is_drawn)| if is_drawn { cache.particle_spacing(object) } else { Ok(None) };
+    is_drawn.into_iter().enumerate().map(spacing).collect()
 }
 
 /// Every object at a recorded time.

@@ -54,23 +54,24 @@ impl Mesh {
     pub fn gather(objects: &[Object], style: &Style, view: &View) -> Self {
         let mut mesh = Self::default();
         let default_radius = view.half_extent() * DEFAULT_RADIUS;
-        let (mut cloths, mut colliders) = (0, 0);
+        let (mut cloths, mut colliders) = (0_usize, 0_usize);
         for object in objects {
+            // Hidden objects count, so that the others keep their colours.
+            let (count, colour_of): (_, fn(usize) -> Vec3) = match object.kind {
+                Kind::Cloth | Kind::Particles => (&mut cloths, cloth_colour),
+                Kind::Collider => (&mut colliders, collider_colour),
+            };
+            let own = colour_of(*count);
+            *count += 1;
+            if !style.shows(object.name) {
+                continue;
+            }
             let tint = style.tints.iter().find(|(name, _)| name == object.name);
-            let or_tint = |own: Vec3| tint.map_or(own, |(_, tint)| Vec3::from(*tint));
+            let colour = tint.map_or(own, |(_, tint)| Vec3::from(*tint));
             match object.kind {
-                Kind::Cloth => {
-                    mesh.add_cloth(object, or_tint(cloth_colour(cloths)), style.colouring);
-                    cloths += 1;
-                }
-                Kind::Collider => {
-                    mesh.add_collider(object, or_tint(collider_colour(colliders)));
-                    colliders += 1;
-                }
-                Kind::Particles => {
-                    mesh.add_particles(object, or_tint(cloth_colour(cloths)), default_radius);
-                    cloths += 1;
-                }
+                Kind::Cloth => mesh.add_cloth(object, colour, style.colouring),
+                Kind::Collider => mesh.add_collider(object, colour),
+                Kind::Particles => mesh.add_particles(object, colour, default_radius),
             }
         }
         mesh

@@ -48,6 +48,9 @@ pub struct Style {
     pub keeps_linear: bool,
     /// Linear colours of objects by their names, instead of those by their order.
     pub tints: Vec<(String, [f32; 3])>,
+    /// Names of objects that are not drawn. They cast no shadow, and an automatic camera does not frame them; the others keep
+    /// their colours.
+    pub hidden: Vec<String>,
     /// The quantity that the colour of a cloth shows.
     pub colouring: Colouring,
     /// Whether the edges of the faces are drawn.
@@ -66,11 +69,19 @@ impl Default for Style {
             background: Background::Studio,
             keeps_linear: false,
             tints: Vec::new(),
+            hidden: Vec::new(),
             colouring: Colouring::Objects,
             wireframe: false,
             surfaces: false,
             ground: Ground::Below,
         }
+    }
+}
+
+impl Style {
+    /// Whether an object of this name is drawn.
+    pub fn shows(&self, name: &str) -> bool {
+        self.hidden.iter().all(|hidden| hidden != name)
     }
 }
 
