@@ -2,12 +2,17 @@
 
 use std::fs;
 
+use nucleus_cache::{ObjectKind, Playback};
+
 use crate::sample::{assert_refused, folder, nucleus, scene, stderr, stdout};
 
 #[test]
 fn a_new_scene_can_run_and_replaces_no_file() {
     let folder = folder();
-    for template in ["drape", "curtain", "hang", "flag", "banner", "cape", "garment", "particles"] {
+    let help = stdout(&nucleus(folder.path(), &["new", "--help"]));
+    let listed: Vec<&str> = help.lines().filter_map(|line| line.trim_start().strip_prefix("- ")).collect();
+    let templates = listed.iter().filter_map(|line| line.split_once(':')).map(|(name, _)| name);
+    for template in templates.chain(["hang"]) {
         let file = format!("{template}.ron");
         assert!(nucleus(folder.path(), &["new", &file, "--template", template]).status.success());
         let said = stdout(&nucleus(folder.path(), &["check", &file]));
@@ -15,12 +20,35 @@ fn a_new_scene_can_run_and_replaces_no_file() {
         let run = nucleus(folder.path(), &["run", &file, "--frames", "3", "--record", "none"]);
         assert!(run.status.success(), "{run:?}");
     }
+    assert!(listed.len() >= 10 && listed.iter().any(|line| line.starts_with("liquid: ")), "{help}");
     let again = nucleus(folder.path(), &["new", "drape.ron"]);
-    assert!(folder.path().join("garment_skirt.obj").exists());
+    assert!(
+        folder.path().join("garment_skirt.obj").exists() && folder.path().join("liquid_glass.obj").exists()
+    );
     assert_refused(&again, "`drape.ron` exists; give another name");
     let text = nucleus(folder.path(), &["new", "first.txt"]);
     assert_refused(&text, "scenes end in `.ron`: write `first.ron`");
     assert!(!folder.path().join("first.txt").exists());
+}
+
+#[test]
+fn the_cape_and_the_curtain_of_the_templates_hang_in_folds() {
+    let folder = folder();
+    for (template, frames, hem) in [("cape", "30", 0..=42), ("curtain", "50", 1886..=1926)] {
+        assert!(nucleus(folder.path(), &["new", "--template", template]).status.success());
+        let run = nucleus(folder.path(), &["run", &format!("{template}.ron"), "--frames", frames]);
+        assert!(run.status.success(), "{}", stderr(&run));
+        let mut cache = Playback::open(folder.path().join(template).with_extension("mcap")).unwrap();
+        let cloth = cache.objects().iter().position(|object| object.kind == ObjectKind::Cloth).unwrap();
+        let points = cache.positions(cloth, cache.time_samples().len() - 1).unwrap();
+        let distance = |a: [f32; 3], b: [f32; 3]| {
+            [0, 1, 2].map(|axis| (a[axis] - b[axis]).powi(2)).iter().sum::<f32>().sqrt()
+        };
+        let hem = &points[hem];
+        let length: f32 = hem.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+        let width = distance(hem[0], hem[hem.len() - 1]);
+        assert!(length > 1.2 * width, "{template}: a hem of {length} across {width}");
+    }
 }
 
 #[cfg(unix)]
