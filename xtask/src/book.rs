@@ -13,7 +13,7 @@
 //! | cost and error, compared with other solvers      | [`mod@bench`]                |
 //! | recipes with their pictures                      | [`mod@cookbook`]             |
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::{Command, ExitStatus};
 use std::time::Instant;
@@ -86,7 +86,10 @@ pub fn run(root: &Path, options: &Options) -> anyhow::Result<()> {
             Page::Features => features(root)?,
             Page::Contact => bench::run(&bench::Options::of_contact(root))?,
             Page::Cookbook => {
-                cookbook::write(root, |arguments| Ok(nucleus(root, arguments)?.success()))?;
+                cookbook::write(root, |folder, arguments| {
+                    let arguments: Vec<&OsStr> = arguments.iter().map(OsString::as_os_str).collect();
+                    Ok(nucleus_in(root, folder, &arguments)?.success())
+                })?;
             }
             Page::Benchmarks => bench::run(&bench::Options::of_benchmarks(root))?,
         }
@@ -115,10 +118,16 @@ fn trades(root: &Path) -> anyhow::Result<()> {
 
 /// Builds and runs the command in release mode.
 fn nucleus(root: &Path, arguments: &[&OsStr]) -> anyhow::Result<ExitStatus> {
+    nucleus_in(root, root, arguments)
+}
+
+/// The same in a folder.
+fn nucleus_in(root: &Path, folder: &Path, arguments: &[&OsStr]) -> anyhow::Result<ExitStatus> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["run", "--quiet", "--release", "--package", "nucleus-cli", "--"]).args(arguments);
-    command.current_dir(root).status().context("cargo cannot be started")
+    command.args(["run", "--quiet", "--release", "--manifest-path"]).arg(root.join("Cargo.toml"));
+    command.args(["--package", "nucleus-cli", "--"]).args(arguments);
+    command.current_dir(folder).status().context("cargo cannot be started")
 }
 
 /// A page that a command writes. Exit code 1 reports failures, which the page lists, and is accepted.

@@ -1,6 +1,6 @@
 //! `docs/cookbook.md`: the scenes of `scenes/cookbook`, each with its text and its picture.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -16,11 +16,13 @@ The gallery tests compile every recipe, and `cargo xtask ci` runs them with thei
 The grammar of scenes is in [`scene.md`](scene.md).
 ";
 
-/// A scene whose first comment has a title and an explanation.
+/// A scene whose first comment has a title, an explanation and, in lines that begin with `$`, the commands of the recipe.
 struct Recipe {
     name: String,
     title: String,
     explanation: Vec<String>,
+    /// Arguments of `nucleus`. The last command draws the picture.
+    commands: Vec<String>,
     scene: String,
 }
 
@@ -43,44 +45,67 @@ impl Recipe {
         let comment: Vec<&str> = text.lines().map_while(|line| line.strip_prefix("// ")).collect();
         let scene = text.lines().skip(comment.len()).collect::<Vec<_>>().join("\n");
         let title = comment.first().and_then(|line| line.strip_prefix("# ")).unwrap_or(&name).to_owned();
-        let explanation = comment.iter().skip(1).map(|line| (*line).to_owned()).collect();
-        Self { name, title, explanation, scene }
+        let (commands, explanation): (Vec<&str>, Vec<&str>) =
+            comment.iter().skip(1).partition(|line| line.starts_with("$ "));
+        let mut commands: Vec<String> =
+            commands.iter().map(|line| line.trim_start_matches("$ nucleus ").to_owned()).collect();
+        if commands.is_empty() {
+            commands = vec![format!("run scenes/cookbook/{name}.ron"), format!("render {name}.mcap")];
+        }
+        let explanation = explanation.into_iter().map(str::to_owned).collect();
+        Self { name, title, explanation, commands, scene }
+    }
+
+    /// The arguments of a command in a folder of caches: scenes by their full paths, and files that exist are replaced.
+    fn arguments(&self, root: &Path, command: &str, picture: &Path) -> Vec<OsString> {
+        let word = |word: &str| match word.starts_with("scenes/") {
+            true => root.join(word).into_os_string(),
+            false => word.into(),
+        };
+        let mut arguments: Vec<OsString> = command.split(' ').map(word).collect();
+        match command.starts_with("render ") {
+            true => {
+                let more = ["--size".as_ref(), "480x300".as_ref(), "-o".as_ref(), picture.as_os_str()];
+                arguments.extend(more.map(OsStr::to_owned));
+            }
+            false => arguments.push("--force".into()),
+        }
+        arguments
     }
 }
 
 /// The page.
 pub fn page(root: &Path) -> io::Result<String> {
     let mut page = HEAD.to_owned();
-    for Recipe { name, title, explanation, scene } in recipes(root)? {
+    for Recipe { name, title, explanation, commands, scene } in recipes(root)? {
         let explanation = explanation.join("\n");
+        let commands: String = commands.iter().map(|command| format!("nucleus {command}\n")).collect();
         // Writing to a string cannot fail.
         let _ = write!(
             page,
             "\n## {title}\n\n{explanation}\n\n![{title}](pictures/cookbook/{name}.png)\n\n\
              [`scenes/cookbook/{name}.ron`](../scenes/cookbook/{name}.ron)\n\n```ron\n{scene}\n```\n\n\
-             ```sh\nnucleus run scenes/cookbook/{name}.ron\nnucleus render {name}.mcap\n```\n"
+             ```sh\n{commands}```\n"
         );
     }
     Ok(page)
 }
 
-/// Runs every recipe, draws its last frame, and writes the page. `nucleus` runs the command with arguments.
-pub fn write(root: &Path, nucleus: impl Fn(&[&OsStr]) -> anyhow::Result<bool>) -> anyhow::Result<()> {
+/// Runs the commands of every recipe, and writes the page. `nucleus` runs the command in a folder with arguments.
+pub fn write(
+    root: &Path,
+    nucleus: impl Fn(&Path, &[OsString]) -> anyhow::Result<bool>,
+) -> anyhow::Result<()> {
     let pictures = root.join("docs").join("pictures").join("cookbook");
     fs::create_dir_all(&pictures)?;
     let caches = crate::files::target(root).join("cookbook");
     fs::create_dir_all(&caches)?;
-    for Recipe { name, .. } in recipes(root)? {
-        let scene = folder(root).join(&name).with_extension("ron");
-        let [cache, picture] =
-            [caches.join(&name).with_extension("mcap"), pictures.join(&name).with_extension("png")];
-        let run: [&OsStr; 5] =
-            ["run".as_ref(), scene.as_ref(), "--force".as_ref(), "-o".as_ref(), cache.as_ref()];
-        ensure!(nucleus(&run)?, "`{name}` does not pass its checks");
-        let size = "480x300".as_ref();
-        let draw: [&OsStr; 6] =
-            ["render".as_ref(), cache.as_ref(), "--size".as_ref(), size, "-o".as_ref(), picture.as_ref()];
-        ensure!(nucleus(&draw)?, "`{name}` cannot be drawn");
+    for recipe in recipes(root)? {
+        let picture = pictures.join(&recipe.name).with_extension("png");
+        for command in &recipe.commands {
+            let arguments = recipe.arguments(root, command, &picture);
+            ensure!(nucleus(&caches, &arguments)?, "`{}`: `nucleus {command}` fails", recipe.name);
+        }
     }
     let page = page(root).context("the recipes cannot be read")?;
     Ok(result_cache::write_atomic(&root.join("docs").join("cookbook.md"), page.as_bytes())?)
@@ -95,8 +120,9 @@ mod tests {
         let root = crate::files::root();
         assert_eq!(fs::read_to_string(root.join("docs/cookbook.md")).unwrap(), page(&root).unwrap());
         let recipes = recipes(&root).unwrap();
-        assert!(recipes.len() >= 12, "twelve recipes");
-        for Recipe { name, title, explanation, scene } in recipes {
+        assert!(recipes.len() >= 18, "eighteen recipes");
+        for Recipe { name, title, explanation, commands, scene } in recipes {
+            assert!(commands.last().is_some_and(|command| command.starts_with("render ")), "{name}");
             assert!(root.join(format!("docs/pictures/cookbook/{name}.png")).is_file(), "{name}");
             assert!(title != name && !explanation.is_empty() && scene.contains("checks:"), "{name}");
         }
