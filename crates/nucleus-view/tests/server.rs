@@ -86,6 +86,26 @@ fn parts_that_a_run_does_not_have_are_no_errors_and_a_lost_cache_is_gone() {
 }
 
 #[test]
+fn bytes_of_a_live_run_that_another_has_replaced_are_no_error_and_not_those_of_the_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let (run, cache) = (LiveRun::new(folder.path().join("run.mcap")), folder.path().join("run.mcap"));
+    let player = serve_live(&run, 0).unwrap();
+    run.begin();
+    std::fs::write(&cache, [7; 1000]).unwrap();
+    run.end("");
+    let bytes = |path: &str, range: &str| {
+        let (status, _, body) = get(player.address(), path, &format!("Range: bytes={range}\r\n"));
+        (status, body.len())
+    };
+    assert_eq!(bytes("/cache.mcap?run=1", "0-99"), (206, 100));
+    assert_eq!(bytes("/cache.mcap?run=1", "1000-1099"), (204, 0), "it may grow");
+    run.begin();
+    assert_eq!(bytes("/cache.mcap?run=1", "0-99"), (204, 0));
+    assert_eq!(bytes("/cache.mcap?run=2", "0-99"), (206, 100));
+    assert_eq!(get(player.address(), "/surface/drops/1/0?run=1", "").0, 204);
+}
+
+#[test]
 fn a_live_run_without_a_file_has_no_cache_yet() {
     let folder = tempfile::tempdir().unwrap();
     let player = serve_live(&LiveRun::new(folder.path().join("run.mcap")), 0).unwrap();

@@ -9,6 +9,13 @@ export class PlayerError extends Error {
   }
 }
 
+// Bytes of a run that a newer one has replaced.
+export class ReplacedRun extends PlayerError {
+  constructor() {
+    super("The scene is solved again.");
+  }
+}
+
 export class DamagedFrame extends PlayerError {
   constructor() {
     super("A frame of the file is damaged.", "The other frames can still be shown.");
@@ -37,6 +44,9 @@ export class UrlSource {
     const answer = await fetch(this.url, { headers: { Range } }).catch(() => null);
     if (!answer) {
       throw new PlayerError("The server no longer responds.", "Start `nucleus play` again.");
+    }
+    if (answer.status === 204) {
+      throw new ReplacedRun();
     }
     const bytes = new Uint8Array(await answer.arrayBuffer());
     if (answer.status !== 206 || bytes.length !== length) {

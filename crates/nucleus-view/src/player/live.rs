@@ -43,11 +43,14 @@ impl LiveRun {
         state.message = message.into();
     }
 
-    /// The file to show: the growing one while there is one.
-    pub(super) fn path(&self) -> PathBuf {
+    /// The file to show: the growing one while there is one. `None` if another run is meant, whose file is replaced.
+    pub(super) fn path(&self, run: Option<u32>) -> Option<PathBuf> {
         let state = self.state();
+        if run.is_some_and(|run| run != state.run) {
+            return None;
+        }
         let part = part_path(&state.cache);
-        if state.solving && is_file(&part) { part } else { state.cache.clone() }
+        Some(if state.solving && is_file(&part) { part } else { state.cache.clone() })
     }
 
     pub(super) fn to_json(&self) -> String {
@@ -89,11 +92,12 @@ mod tests {
         let cache = folder.path().join("a.mcap");
         let run = LiveRun::new(&cache);
         run.begin();
-        assert_eq!(run.path(), cache, "it has no file yet");
+        assert_eq!(run.path(None).as_ref(), Some(&cache), "it has no file yet");
         std::fs::write(part_path(&cache), "").unwrap();
-        assert_eq!(run.path(), part_path(&cache));
+        assert_eq!(run.path(None), Some(part_path(&cache)));
         run.end("a \"bad\"\nscene");
-        assert_eq!(run.path(), cache);
+        assert_eq!(run.path(Some(1)), Some(cache));
+        assert_eq!(run.path(Some(2)), None);
         assert_eq!(run.to_json(), r#"{"run":1,"solving":false,"message":"a \"bad\"\u000ascene"}"#);
     }
 }

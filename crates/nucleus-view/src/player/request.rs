@@ -12,6 +12,8 @@ pub(super) struct Request {
     pub method: String,
     /// The path without its query, percent-encoded.
     pub path: String,
+    /// The run that is meant, the number after `run=` in the query.
+    pub run: Option<u32>,
     /// The value of the `Range` header.
     pub range: Option<String>,
     /// The value of the `Host` header.
@@ -30,8 +32,9 @@ impl Request {
         if !version.starts_with("HTTP/1.") {
             return Ok(None);
         }
-        let path = target.split('?').next().unwrap_or_default();
-        let mut request = Self { method: method.into(), path: path.into(), range: None, host: None };
+        let (path, query) = target.split_once('?').unwrap_or((target, ""));
+        let run = query.split('&').find_map(|one| one.strip_prefix("run=")?.parse().ok());
+        let mut request = Self { method: method.into(), path: path.into(), run, range: None, host: None };
         for line in lines {
             let line = line?;
             if line.is_empty() {

@@ -26,10 +26,11 @@ pub(super) enum Shown {
 }
 
 impl Shown {
-    fn path(&self) -> PathBuf {
+    /// The file, and the status for bytes that it does not have. `None` if a run is meant that another has replaced.
+    fn file(&self, run: Option<u32>) -> Option<(PathBuf, Missing)> {
         match self {
-            Self::File(path) => path.clone(),
-            Self::Live(run) => run.path(),
+            Self::File(path) => Some((path.clone(), Missing::OF_A_FILE)),
+            Self::Live(live) => live.path(run).map(|path| (path, Missing::OF_A_LIVE_RUN)),
         }
     }
 }
@@ -47,6 +48,21 @@ const NOTHING_YET: &str = "204 No Content";
 /// The status for a cache that was there when the server started.
 const GONE: &str = "410 Gone";
 
+/// The status for a cache, for a range of it, and for a surface, that are not there.
+#[derive(Debug, Clone, Copy)]
+struct Missing {
+    cache: &'static str,
+    range: &'static str,
+    surface: &'static str,
+}
+
+impl Missing {
+    const OF_A_FILE: Self =
+        Self { cache: GONE, range: "416 Range Not Satisfiable", surface: "404 Not Found" };
+    /// The file of a live run begins anew with each run, which is no error.
+    const OF_A_LIVE_RUN: Self = Self { cache: NOTHING_YET, range: NOTHING_YET, surface: NOTHING_YET };
+}
+
 /// The path of the state of a live run.
 const LIVE: &str = "/live.json";
 
@@ -62,16 +78,21 @@ pub(super) fn respond(request: &Request, caches: &Caches, to: &mut impl Write) -
     }
     match (request.path.as_str(), &caches.other) {
         (CACHE, _) => {
-            let missing = if matches!(caches.shown, Shown::Live(_)) { NOTHING_YET } else { GONE };
-            return send_cache(request, &caches.shown.path(), missing, with_body, to);
+            let Some((cache, missing)) = caches.shown.file(request.run) else {
+                return refuse(to, NOTHING_YET, "");
+            };
+            return send_cache(request, &cache, missing, with_body, to);
         }
         (LIVE, _) => return send_live(&caches.shown, with_body, to),
-        (OTHER, Some(other)) => return send_cache(request, other, GONE, with_body, to),
+        (OTHER, Some(other)) => return send_cache(request, other, Missing::OF_A_FILE, with_body, to),
         (OTHER, None) => return refuse(to, NOTHING_YET, ""),
         _ => {}
     }
     if let Some(wanted) = request.path.strip_prefix(SURFACE) {
-        return send_surface(&caches.shown.path(), wanted, with_body, to);
+        let found = caches.shown.file(request.run);
+        let bytes = found.as_ref().and_then(|(cache, _)| surface(cache, wanted));
+        let missing = found.map_or(NOTHING_YET, |(_, missing)| missing.surface);
+        return send_surface(bytes, missing, with_body, to);
     }
     match asset(&request.path) {
         Some(asset) => send_asset(asset, with_body, to),
@@ -96,8 +117,13 @@ fn send_live(shown: &Shown, with_body: bool, to: &mut impl Write) -> io::Result<
     if with_body { to.write_all(text.as_bytes()) } else { Ok(()) }
 }
 
-fn send_surface(cache: &Path, wanted: &str, with_body: bool, to: &mut impl Write) -> io::Result<()> {
-    let Some(bytes) = surface(cache, wanted) else { return refuse(to, "404 Not Found", "") };
+fn send_surface(
+    bytes: Option<Vec<u8>>,
+    missing: &str,
+    with_body: bool,
+    to: &mut impl Write,
+) -> io::Result<()> {
+    let Some(bytes) = bytes else { return refuse(to, missing, "") };
     head(to, "200 OK", bytes.len() as u64, "Content-Type: application/octet-stream\r\n")?;
     if with_body { to.write_all(&bytes) } else { Ok(()) }
 }
@@ -106,11 +132,11 @@ fn send_surface(cache: &Path, wanted: &str, with_body: bool, to: &mut impl Write
 fn send_cache(
     request: &Request,
     cache: &Path,
-    missing: &str,
+    missing: Missing,
     with_body: bool,
     to: &mut impl Write,
 ) -> io::Result<()> {
-    let Ok(mut file) = File::open(cache) else { return refuse(to, missing, "") };
+    let Ok(mut file) = File::open(cache) else { return refuse(to, missing.cache, "") };
     let length = file.metadata()?.len();
     let name = cache.file_name().map(|name| escaped(&name.to_string_lossy())).unwrap_or_default();
     let mut headers = format!(
@@ -121,7 +147,7 @@ fn send_cache(
         ByteRange::Whole => ("200 OK", 0..length),
         ByteRange::Unsatisfiable if length == 0 => return refuse(to, NOTHING_YET, ""),
         ByteRange::Unsatisfiable => {
-            return refuse(to, "416 Range Not Satisfiable", &format!("Content-Range: bytes */{length}\r\n"));
+            return refuse(to, missing.range, &format!("Content-Range: bytes */{length}\r\n"));
         }
         ByteRange::Part(part) => {
             headers += &format!("Content-Range: bytes {}-{}/{length}\r\n", part.start, part.end - 1);
