@@ -177,6 +177,16 @@ fn colouring_by_strain_replaces_the_colour_of_the_cloth() {
 }
 
 #[test]
+fn a_link_hides_objects() {
+    let Some(chromium) = chromium() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), Sample::default());
+    assert!(look(chromium, &path, "frame=12&hide=ball").cloth() > 0.03);
+    let hidden = look(chromium, &path, "frame=12&hide=flag&hide=ball").cloth();
+    assert!(hidden < 0.01, "{hidden} of the screen: the button that plays is red too");
+}
+
+#[test]
 fn a_killed_run_plays_up_to_its_last_complete_frame() {
     let Some(chromium) = chromium() else { return };
     let folder = tempfile::tempdir().unwrap();
@@ -283,6 +293,15 @@ fn particles_and_their_surface_take_the_colour_of_speed_particles_that_of_contac
     let touching = look("&contacts", &blue);
     assert!(blue(&touching) > 0.01 && green(&touching) < 1e-3, "{} is blue", blue(&touching));
     assert!(touching.page.replace('\n', "").contains(" touching</dt><dd>4</dd>"), "{}", touching.page);
+    let wet = look("&contacts&surface", &blue);
+    assert!(blue(&wet) > 0.01 && green(&wet) < 1e-3, "{} of the screen is blue", blue(&wet));
+    assert!(wet.page.replace('\n', "").contains(" touching</dt><dd>4</dd>"), "particles are counted");
+    // All particles are at 1.2 units per second.
+    assert!(
+        look("&speed", &|shown| f64::from(u8::from(shown.page.contains(">2</span>"))))
+            .page
+            .contains(">2</span>")
+    );
     let strained = look("&strain=0.1", &green);
     assert!(green(&strained) > 0.01 && strained.page.contains(r#"id="legend" hidden="#), "{}", strained.page);
 }

@@ -2,6 +2,12 @@
 
 const percent = (x) => `${(x * 100).toFixed(Math.abs(x) < 0.0995 ? 2 : 1)} %`;
 export const plain = (x) => (Number.isInteger(x) ? x.toLocaleString("en") : x.toPrecision(4));
+// The smallest of 1, 2, 5, 10 ... that is not below a number.
+export function roundUp(x) {
+  const power = 10 ** Math.floor(Math.log10(x));
+  return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= x * 0.999) ?? x;
+}
+
 const ratio = (x) => x.toFixed(3);
 const some = (x) => x > 0;
 const negative = (x) => x < 0;

@@ -1,4 +1,4 @@
-// What a camera frames, and the boxes around objects, as in the pictures of `nucleus render`.
+// What a camera frames at first, and the boxes around objects, as in the pictures of `nucleus render`.
 
 import { MAX_COORDINATE } from "./mesh.js";
 
@@ -29,9 +29,6 @@ export function unionOf(boxes) {
 // more than three times their extent, such as a landscape, does not count. `objects` have a kind, points, and how far these are
 // shown from where they are; null without any.
 export function boxToFrame(objects) {
-  const boxes = (all) => all.map(({ kind, points, shift }) => (
-    moved(kind === "particles" ? boxOfMost(points) : boxOf(points), shift)
-  ));
   const colliders = boxes(objects.filter(({ kind }) => kind === "collider"));
   const simulated = unionOf(boxes(objects.filter(({ kind }) => kind !== "collider")));
   if (!simulated) {
@@ -43,6 +40,15 @@ export function boxToFrame(objects) {
   ));
   return unionOf([simulated, ...colliders.filter((box) => extentOf(box) <= 3 * extent && isNear(box))]);
 }
+
+// The box of objects, however large and far away; of many particles most. Null without any.
+export function boxOfAll(objects) {
+  return objects.length > 0 ? unionOf(boxes(objects)) : null;
+}
+
+const boxes = (objects) => objects.map(({ kind, points, shift }) => (
+  moved(kind === "particles" ? boxOfMost(points) : boxOf(points), shift)
+));
 
 const moved = ({ low, high }, by = [0, 0, 0]) => ({
   low: low.map((x, axis) => x + by[axis]), high: high.map((x, axis) => x + by[axis]),

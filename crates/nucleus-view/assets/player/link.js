@@ -20,6 +20,7 @@ export function optionsOf({ timeline, scene, camera, series }) {
   }
   new Set(scene.selections.filter(({ isShown }) => isShown).map(({ owner }) => owner)).forEach((owner) => options.append("select", owner));
   scene.picks.components.forEach((component) => options.append("pick", component));
+  scene.objects.filter(({ isShown }) => !isShown).forEach(({ name }) => options.append("hide", name));
   wireframe && options.set("wireframe", "");
   surface && options.set("surface", "");
   scene.twins.length > 0 && options.set("twin", twin);
@@ -57,6 +58,7 @@ export async function applyAddress(player) {
   if (options.has("surface") && !scene.look.surface) {
     player.toggleSurface();
   }
+  player.hide(options.getAll("hide"));
   if (options.has("select")) {
     player.select(options.getAll("select"));
   }

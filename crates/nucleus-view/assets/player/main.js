@@ -37,10 +37,14 @@ const KEYS = {
   y: copyLink,
   "[": (player) => player.scaleColours(0.5),
   "]": (player) => player.scaleColours(2),
-  Escape: (player) => player.pickAt(null),
-  "?": () => byId("help").toggleAttribute("open"),
+  Escape: (player) => byId("help").hidden ? player.pickAt(null) : toggleHelp(),
+  "?": toggleHelp,
 };
-const BUTTONS = { play: " ", loop: "r", mark: "i", end: "o", link: "y", wireframe: "w", surface: "u", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
+const BUTTONS = { play: " ", loop: "r", mark: "i", end: "o", link: "y", keys: "?", "close-help": "?", wireframe: "w", surface: "u", strain: "s", speed: "v", contacts: "x", difference: "d", twin: "b", camera: "t", all: "f" };
+
+function toggleHelp() {
+  byId("help").toggleAttribute("hidden");
+}
 
 function listen(player) {
   document.addEventListener("keydown", (event) => {

@@ -9,7 +9,7 @@ const REACH = 14;
 const MAX_READ = 1e5;
 
 // The point of a visible object under a place on the canvas, in pixels: the nearest particle or face that is hit, of the face
-// its nearest corner; else the nearest point within reach. Null where there is none.
+// its nearest corner, of a surface the particle nearest to that; else the nearest point within reach. Null where there is none.
 export function pointAt(scene, camera, [x, y]) {
   const { view, projection } = camera.matrices(scene.aspect);
   const matrix = multiply(projection, view);
@@ -19,17 +19,32 @@ export function pointAt(scene, camera, [x, y]) {
     return w > 0 ? [(0.5 + (0.5 * a) / w) * clientWidth - x, (0.5 - (0.5 * b) / w) * clientHeight - y, w] : null;
   };
   let best = { depth: Infinity, gap: Infinity, found: null };
-  for (const { name, mesh, isShown, looks } of scene.objects) {
-    if (!isShown || !mesh.points || mesh.kind === "surface") {
+  for (const { name, mesh, isShown, looks, recorded } of scene.objects) {
+    if (!isShown || !mesh.points) {
       continue;
     }
     const places = Array.from({ length: mesh.count }, (_, v) => (mesh.isInvalid[v] ? null : place(mesh.positions, 3 * v)));
     const perDepth = ((mesh.radius ?? 0) * projection[5] * clientHeight) / 2;
     const radius = (v) => (perDepth * (looks?.[NUMBERS * v] ?? 1)) / places[v][2];
     best = mesh.kind === "particles" ? nearestDisc(name, places, radius, best) : nearestHit(name, mesh, places, best);
-    best = best.depth < Infinity ? best : nearestPoint(name, mesh, places, best);
+    const isSurface = mesh.kind === "surface";
+    if (isSurface && best.found?.object === name) {
+      best.found.point = nearestParticle(recorded, mesh.points, best.found.point);
+    }
+    best = best.depth < Infinity || isSurface ? best : nearestPoint(name, mesh, places, best);
   }
   return best.found;
+}
+
+// The particle that is nearest to a point of their surface.
+function nearestParticle(particles, points, point) {
+  const distance = (at) => Math.hypot(...[0, 1, 2].map((axis) => particles[3 * at + axis] - points[3 * point + axis]));
+  let [found, least] = [0, Infinity];
+  for (let at = 0; 3 * at < particles.length; at += 1) {
+    const own = distance(at);
+    [found, least] = own < least ? [at, own] : [found, least];
+  }
+  return found;
 }
 
 // The nearest triangle that contains the pointer, which is the origin of the places, and its nearest corner.
@@ -120,7 +135,8 @@ export class Picks {
   // The places of the picked points that exist in the scene, in the order of picking.
   places(scene) {
     const placeOf = ({ object, point }) => {
-      const points = scene.objects.find(({ name }) => name === object)?.mesh.points ?? [];
+      const own = scene.objects.find(({ name }) => name === object);
+      const points = own?.recorded ?? own?.mesh.points ?? [];
       return 3 * point + 2 < points.length ? Array.from(points.slice(3 * point, 3 * point + 3)) : null;
     };
     return this.all.map(placeOf).filter(Boolean);

@@ -12,11 +12,12 @@ import { pointAt } from "./pick.js";
 import { levelPlane } from "./plane.js";
 import { Scene } from "./scene.js";
 import { Series } from "./series.js";
-import { nearestValues, particleSpeeds } from "./speed.js";
+import { ReplacedRun } from "./source.js";
+import { fittedSpeed, nearestValues, particleSpeeds } from "./speed.js";
 import { hasSurfaces, withSurfaces } from "./surface.js";
 import { Timeline } from "./timeline.js";
 
-// The speed of full saturation at first, in metres per second: that after a fall of 1.3 m.
+// The speed of full saturation until it is fitted, in metres per second: that after a fall of 1.3 m.
 const FULL_SPEED = 5;
 const COLOURINGS = ["strain", "speed", "contacts", "difference"];
 const DEFAULT_STAGE = { low: [-1, -1, -1], high: [1, 1, 1] };
@@ -44,7 +45,6 @@ export class Player {
     try {
       const cache = await Cache.open(source, onProgress);
       this.other = other && (await Cache.open(other, onProgress));
-      this.isFitted = false;
       this.names = [source.name, other?.name];
       await this.present(cache, source.name);
       showState("ready");
@@ -57,6 +57,7 @@ export class Player {
 
   async present(cache, name) {
     const { scene, camera } = this;
+    this.fitted = new Set(); // quantities whose scale is fitted to the run
     scene.setObjects(cache.objects, this.other?.objects);
     ["difference", "twin"].forEach((id) => (byId(id).hidden = !this.other));
     const stage = await this.findStage(cache);
@@ -107,7 +108,9 @@ export class Player {
     before.pause();
     const stage = await this.findStage(cache);
     if (isNew) {
+      const hidden = this.scene.objects.filter(({ isShown }) => !isShown).map((object) => object.name);
       this.scene.setObjects(cache.objects);
+      this.hide(hidden);
       this.describe(cache, name);
     }
     this.followCamera(cache);
@@ -159,7 +162,7 @@ export class Player {
       const state = scene.look.surface ? await withSurfaces(cache, recorded) : recorded;
       const twin = await this.twinOf(cache, state);
       await this.findSpeed(cache, recorded, state);
-      scene.objects.forEach((object, k) => (object.contacts = state.contacts[k]));
+      scene.objects.forEach((object, k) => this.takeRecorded(object, recorded, state, k));
       if (cache !== this.timeline?.cache) {
         return; // another file has been opened in the meantime
       }
@@ -173,15 +176,25 @@ export class Player {
       countPoints(scene);
       showFigures(state.report, scene.invalidPoints, this.other && (twin?.report ?? {}));
       this.compare(state, twin);
-      showContactStates(scene, state.contacts);
+      showContactStates(scene, recorded.contacts);
       showPicks(scene.picks, scene);
       showLegendNote(scene.look.colour === "speed" && scene.objects.some(({ isShown, speeds }) => isShown && speeds === null));
       showNotice("frame", "");
       this.redraw();
       cache.prefetch(index);
     } catch (error) {
+      if (error instanceof ReplacedRun) {
+        return; // the next one is opened as soon as it has a frame
+      }
       showNotice("frame", `Frame ${cache.frameNumber(index)}: ${error.message} ${error.hint ?? ""}`);
     }
+  }
+
+  // Hides the objects of these names, and shows all others.
+  hide(names) {
+    this.scene.objects.forEach((object) => this.scene.setShown(object, !names.includes(object.name)));
+    showObjects(this.scene, this.redraw);
+    this.redraw();
   }
 
   // Shows the points of the constraints of these names, and hides those of all others.
@@ -243,10 +256,23 @@ export class Player {
     return frame < first ? `The other run begins at frame ${first}.` : `The other run has no frame ${frame}.`;
   }
 
+  // Fits the scale of a quantity to the run, once.
+  fitOnce(quantity) {
+    const fit = { speed: () => this.fitSpeed(), difference: () => this.fitDifference() }[quantity];
+    if (fit && !this.fitted.has(quantity)) {
+      this.fitted.add(quantity);
+      fit().catch(() => {}); // of a run that is solved again
+    }
+  }
+
+  // Sets the scale of the speed to that of the run.
+  async fitSpeed() {
+    this.setFullScale("speed", await fittedSpeed(this.timeline.cache));
+  }
+
   // Sets the scale of the difference to the 99th percentile of the distances of the shown frame; of the run, where the
   // frame has none.
   async fitDifference() {
-    this.isFitted = true;
     this.setFullScale("difference", this.p99 || (await fittedScale(this)));
   }
 
@@ -291,6 +317,15 @@ export class Player {
     });
   }
 
+  // What an object keeps of the recorded state: its points, and the contact states of the points that are shown. `shown` has
+  // surfaces in place of particles if they are shown; a point of a surface has the state of the nearest particle.
+  takeRecorded(object, recorded, shown, k) {
+    object.recorded = recorded.positions[k];
+    const contacts = recorded.contacts[k];
+    const isSurface = contacts && this.scene.look.colour === "contacts" && shown.meshes[k].kind === "surface";
+    object.contacts = isSurface ? nearestValues(shown.positions[k], recorded.positions[k], contacts) : contacts;
+  }
+
   toggleWireframe() {
     const { look } = this.scene;
     look.wireframe = !look.wireframe;
@@ -309,15 +344,15 @@ export class Player {
     this.timeline.go(this.timeline.index, this.timeline.timeIndex);
   }
 
-  // Colours the objects by a quantity; a second call returns to a colour per object. Without a scale, that of the
-  // difference is fitted once.
+  // Colours the objects by a quantity; a second call returns to a colour per object. Without a scale, those of speed and
+  // difference are fitted once.
   colourBy(quantity, hasScale = false) {
     const { look } = this.scene;
     if (byId(quantity).hidden) {
       return; // the cache does not hold it
     }
-    if (quantity === "difference" && !hasScale && !this.isFitted) {
-      this.fitDifference();
+    if (!hasScale) {
+      this.fitOnce(quantity);
     }
     look.colour = look.colour === quantity ? "object" : quantity;
     COLOURINGS.forEach((id) => byId(id).setAttribute("aria-pressed", look.colour === id));

@@ -2,7 +2,8 @@
 
 import { cross, multiply, normalise, orthographic, view } from "./camera.js";
 import { VertexArray, context, depthTarget, program } from "./gl.js";
-import { boxToFrame } from "./framing.js";
+import { roundUp } from "./figures.js";
+import { boxOfAll } from "./framing.js";
 import { Mesh } from "./mesh.js";
 import { Particles, VALUE as PARTICLE_VALUE } from "./particles.js";
 import { Picks } from "./pick.js";
@@ -135,10 +136,10 @@ export class Scene {
     this.isShadowStale = true;
   }
 
-  // The box that a camera frames, of all visible objects; null if none is visible.
+  // The box of all visible objects, and of the other run where it is shown beside them; null if none is visible.
   bounds() {
-    const shown = this.objects.filter(({ isShown }) => isShown).concat(this.look.twin === "beside" ? this.twins : []);
-    return boxToFrame(shown.map(({ mesh }) => mesh).filter(({ points }) => points));
+    const shown = this.objects.filter(({ isShown }) => isShown).concat(this.look.twin === "beside" ? this.drawnTwins : []);
+    return boxOfAll(shown.map(({ mesh }) => mesh).filter(({ points }) => points));
   }
 
   get invalidPoints() {
@@ -224,7 +225,7 @@ export class Scene {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     const [across, along] = axesOf(this.floor);
     const plane = { centre: foot(this.floor, eye.centre), across, along, upright: this.floor.normal };
-    const look = { reach: eye.reach * 9, spacing: roundLength(eye.reach / 4), background: BACKGROUND };
+    const look = { reach: eye.reach * 9, spacing: roundUp(eye.reach / 4), background: BACKGROUND };
     this.use(this.programs.floor, { ...eye, ...plane, ...look });
     gl.bindVertexArray(this.empty);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
@@ -236,7 +237,7 @@ export class Scene {
     switch (this.look.colour) {
       case "strain": return mesh.kind === "cloth";
       case "speed": return speeds?.length === mesh.count || before !== undefined;
-      case "contacts": return ["cloth", "particles"].includes(mesh.kind) && contacts !== undefined;
+      case "contacts": return mesh.kind !== "collider" && contacts !== undefined;
       // Points correspond only if both runs have the same number.
       case "difference": return this.areTwinsKnown && Boolean(twin?.mesh.points) && twin.topology.points === topology.points;
       default: return false;
@@ -294,11 +295,16 @@ export class Scene {
     if (!own?.isShown || !own.mesh.points) {
       return;
     }
-    const known = points.filter((point) => 3 * point + 2 < own.mesh.points.length);
-    vertices.set(POSITION, Float32Array.from(known.flatMap((point) => [...own.mesh.points.slice(3 * point, 3 * point + 3)])));
+    const all = own.recorded ?? own.mesh.points; // a surface has other points than its particles
+    const known = points.filter((point) => 3 * point + 2 < all.length);
+    vertices.set(POSITION, Float32Array.from(known.flatMap((point) => [...all.slice(3 * point, 3 * point + 3)])));
     this.use(this.programs.dots, { ...eye, colour, size: size * Math.min(window.devicePixelRatio || 1, 2) });
     gl.bindVertexArray(vertices.array);
+    if (own.mesh.kind === "surface") {
+      gl.disable(gl.DEPTH_TEST); // particles lie inside their surface
+    }
     gl.drawArrays(gl.POINTS, 0, known.length);
+    gl.enable(gl.DEPTH_TEST);
   }
 
   drawObject(object, eye) {
@@ -347,10 +353,4 @@ function setMesh(object, topology) {
     const { shift } = object.mesh;
     Object.assign(object, { topology, mesh: Object.assign(new Mesh(topology), { shift }) });
   }
-}
-
-// The smallest of 1, 2, 5, 10 ... that is not below a length.
-function roundLength(length) {
-  const power = 10 ** Math.floor(Math.log10(length));
-  return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= length * 0.999) ?? length;
 }

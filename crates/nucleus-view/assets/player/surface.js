@@ -8,20 +8,20 @@ export function hasSurfaces(cache) {
 // A state with the surface of its particles in place of them. Particles without a surface stay as they are.
 export async function withSurfaces(cache, state) {
   const found = await Promise.all(cache.objects.map(({ name }, k) => (
-    state.meshes[k].kind === "particles" ? surfaceOf(name, state) : null
+    state.meshes[k].kind === "particles" ? surfaceOf(cache.source.url, name, state) : null
   )));
   const choose = (own, part) => own.map((one, k) => (found[k] ? found[k][part] : one));
   return {
     ...state,
     positions: choose(state.positions, "positions"),
     meshes: choose(state.meshes, "mesh"),
-    contacts: choose(state.contacts, "contacts"),
   };
 }
 
-async function surfaceOf(name, { frame, timeIndex }) {
-  const answer = await fetch(`/surface/${encodeURIComponent(name)}/${frame}/${timeIndex}`).catch(() => null);
-  if (!answer?.ok) {
+async function surfaceOf(url, name, { frame, timeIndex }) {
+  const query = new URL(url, location.href).search; // the number of a live run
+  const answer = await fetch(`/surface/${encodeURIComponent(name)}/${frame}/${timeIndex}${query}`).catch(() => null);
+  if (answer?.status !== 200) {
     return null;
   }
   const bytes = await answer.arrayBuffer();
@@ -31,5 +31,5 @@ async function surfaceOf(name, { frame, timeIndex }) {
   const starts = Uint32Array.from({ length: quads + 1 }, (_, quad) => 4 * quad);
   // A number of its own in each frame: its points are not those of another frame.
   const mesh = { kind: "surface", points, starts, corners, rest: positions, number: NaN };
-  return { positions, mesh, contacts: null };
+  return { positions, mesh };
 }
