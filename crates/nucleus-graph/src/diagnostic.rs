@@ -141,6 +141,16 @@ pub(crate) fn listed<S: AsRef<str>>(words: &[S]) -> String {
     }
 }
 
+/// The value of a word of an enum. The word may be in upper or lower case and of parts that are joined or not: `liveForever`,
+/// `Live forever` and `live forever` are one word.
+pub(crate) fn value_of<'a, T>(word: &str, known: impl IntoIterator<Item = (&'a str, T)>) -> Option<T> {
+    let bare = |word: &str| -> String {
+        word.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    };
+    let word = bare(word);
+    known.into_iter().find(|(name, _)| bare(name) == word).map(|(_, value)| value)
+}
+
 /// The candidate with the smallest edit distance, if that is at most a third of the word's length (at least 1). Of
 /// equals, the first.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

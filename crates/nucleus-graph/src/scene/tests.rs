@@ -2,7 +2,7 @@ use std::path::Path;
 
 use super::*;
 use crate::attributes::{
-    Choice, Component, Selection, dynamic_constraint, n_base, n_cloth, nucleus, poly_plane,
+    Choice, Component, Selection, dynamic_constraint, n_base, n_cloth, node_types, nucleus, poly_plane,
 };
 use crate::graph::{Channel, Graph, Setting};
 
@@ -83,14 +83,54 @@ fn vectors_can_be_keyed_as_a_whole_or_by_component() {
 }
 
 #[test]
-fn enums_are_set_by_word_or_mayas_label_or_index() {
-    for written in ["objectSpace", "\"Object Space\"", "\"objectSpace\"", "1"] {
+fn enums_are_set_by_word_or_mayas_label_in_any_case_or_index() {
+    for written in [
+        "objectSpace",
+        "\"Object Space\"",
+        "\"objectSpace\"",
+        "1",
+        "\"object space\"",
+        "OBJECTSPACE",
+        "object_space",
+    ] {
         let text = with_nodes(&format!(
             "\"p\": polyPlane(), \"c\": nCloth(inputMesh: \"p\", scalingRelation: {written})"
         ));
         let scene = scene(&text);
         let cloth = scene.graph.node(scene.graph.find("c").expect("it is there"));
         assert_eq!(cloth.get(&n_cloth::SCALING_RELATION), Choice(1), "{written}");
+    }
+}
+
+#[test]
+fn words_of_keys_ramps_and_records_may_be_in_any_case() {
+    let nodes = r#""p": polyPlane(), "c": nCloth(inputMesh: "p", drag: keys(at: [(1, 0, SPLINE), (3, 1)], post: CycleOffset)),
+        "b": nParticle(radiusScale: [(0, 1, Smooth), (1, 0)])"#;
+    let any_case = scene(&with_nodes(nodes));
+    assert_eq!(
+        any_case,
+        scene(&with_nodes(
+            &nodes
+                .replace("SPLINE", "spline")
+                .replace("CycleOffset", "cycleOffset")
+                .replace("Smooth", "smooth")
+        ))
+    );
+    let record = |word: &str| {
+        scene(&with_nodes(nodes).replacen("nodes:", &format!("record: {word}, nodes:"), 1)).record
+    };
+    assert_eq!(record("SubSteps"), record("substeps"));
+    assert_ne!(record("SubSteps"), any_case.record);
+}
+
+#[test]
+fn no_enum_has_two_words_that_differ_in_case_or_gaps_only() {
+    for node_type in node_types() {
+        for row in node_type.attributes() {
+            let words: Vec<String> = row.words().iter().map(|(_, word)| word.to_lowercase()).collect();
+            let all: std::collections::BTreeSet<&String> = words.iter().collect();
+            assert_eq!(all.len(), words.len(), "{}.{}", node_type.name, row.name);
+        }
     }
 }
 

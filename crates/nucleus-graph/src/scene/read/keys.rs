@@ -2,7 +2,7 @@
 
 use crate::animation::{Curve, Infinity, Key, Tangent};
 use crate::attributes::{Attribute, Kind, Value as AttrValue};
-use crate::diagnostic::{Findings, listed, nearest};
+use crate::diagnostic::{Findings, listed, nearest, value_of};
 use crate::graph::{Channel, Setting};
 use crate::scene::syntax::{Node, Value, Word};
 
@@ -51,7 +51,7 @@ impl Keyed<'_> {
             let Value::Word(word) = &node.value else {
                 return expected(label, "the word of an infinity, like `cycle`", node, findings);
             };
-            let known = Infinity::WORDS.iter().find(|(name, _)| name == word);
+            let known = value_of(word, Infinity::WORDS);
             if known.is_none() {
                 let error = findings.error(&node.span, format!("there is no infinity `{word}`"));
                 match nearest(word, names.iter().copied()) {
@@ -59,7 +59,7 @@ impl Keyed<'_> {
                     None => error.help(format!("there are {}", listed(&names))),
                 };
             }
-            known.map(|(_, infinity)| *infinity)
+            known
         });
         if self.unknown.is_empty() { Some([pre?, post?]) } else { None }
     }
@@ -188,8 +188,8 @@ const TANGENTS: &str = "a tangent is `stepped`, `linear`, `spline`, `flat` or `a
 fn read_tangent(node: &Node, findings: &mut Findings) -> Option<Tangent> {
     let tangents = Tangent::WORDS;
     if let Value::Word(word) = &node.value {
-        if let Some((_, tangent)) = tangents.iter().find(|(name, _)| name == word) {
-            return Some(*tangent);
+        if let Some(tangent) = value_of(word, tangents) {
+            return Some(tangent);
         }
         let error = findings.error(&node.span, format!("there is no tangent `{word}`"));
         match nearest(word, tangents.iter().map(|(name, _)| *name)) {

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::attributes::{
     Attribute, Choice, ColorPoint, Kind, Painting, RampPoint, SelectedValues, Value as AttrValue,
 };
-use crate::diagnostic::{Findings, listed};
+use crate::diagnostic::{Findings, listed, value_of};
 use crate::graph::{Channel, Setting};
 use crate::paint::Expression;
 use crate::scene::syntax::{Node, Value};
@@ -177,7 +177,8 @@ fn point_parts<'a>(
         },
         _ => return expected(label, what, node, findings),
     };
-    let Some(index) = RampPoint::INTERPOLATIONS.iter().position(|name| *name == word) else {
+    let known = RampPoint::INTERPOLATIONS.iter().enumerate().map(|(index, name)| (*name, index));
+    let Some(index) = value_of(word, known) else {
         let error = findings.error(&node.span, format!("{label} has no interpolation `{word}`"));
         error.help(format!("it takes {}", listed(&RampPoint::INTERPOLATIONS)));
         return None;

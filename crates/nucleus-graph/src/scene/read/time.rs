@@ -1,6 +1,6 @@
 //! `time: (start: 1, end: 120, fps: 24)` and `record: every(10)`.
 
-use crate::diagnostic::Findings;
+use crate::diagnostic::{Findings, value_of};
 use crate::scene::document::{MAX_FRAME, Record, TimeSpan, evaluation_interval, is_frame_rate};
 use crate::scene::syntax::{Node, Value};
 
@@ -68,10 +68,13 @@ fn evaluations(node: &Node, findings: &mut Findings) -> Option<f64> {
 
 /// Reads `record`.
 pub(super) fn read_record(node: &Node, findings: &mut Findings) -> Option<Record> {
+    let words = [("frames", Record::Frames), ("substeps", Record::Substeps), ("none", Record::None)];
+    if let Value::Word(word) = &node.value
+        && let Some(record) = value_of(word, words)
+    {
+        return Some(record);
+    }
     match &node.value {
-        Value::Word(word) if word == "frames" => Some(Record::Frames),
-        Value::Word(word) if word == "substeps" => Some(Record::Substeps),
-        Value::Word(word) if word == "none" => Some(Record::None),
         Value::Tuple { name: Some(name), items } if name.text == "every" => every(items).or_else(|| {
             let error = findings.error(&node.span, "`every` takes a whole number above zero".to_owned());
             error.help("`every(10)` records each tenth frame and the last");

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::attributes::{Attribute, Choice, Kind, Value as AttrValue};
-use crate::diagnostic::{Findings, listed, nearest};
+use crate::diagnostic::{Findings, listed, nearest, value_of};
 use crate::scene::syntax::{Node, Value};
 
 /// Integers up to here are exact in a 64-bit float.
@@ -133,15 +133,12 @@ fn written(x: f64) -> String {
     if x.abs() < 1e7 && (x == 0.0 || x.abs() >= 1e-5) { format!("{x}") } else { format!("{x:e}") }
 }
 
-/// A word of an enum: the name in scenes, Maya's label, or Maya's index.
+/// A word of an enum, or Maya's index.
 fn choice(label: &str, row: &'static Attribute, node: &Node, findings: &mut Findings) -> Option<Choice> {
-    let Kind::Choice(maya_words) = row.kind else { return None };
     let words = row.words();
     let found = match &node.value {
         Value::Word(name) | Value::Text(name) => {
-            let ours = words.iter().find(|(_, word)| word == name).map(|(index, _)| *index);
-            let theirs = || maya_words.iter().find(|(_, word)| word == name).map(|(index, _)| Choice(*index));
-            ours.or_else(theirs).ok_or(name.as_str())
+            value_of(name, words.iter().map(|(index, word)| (word.as_str(), *index))).ok_or(name.as_str())
         }
         Value::Number(number) => {
             let index = words.iter().map(|(index, _)| *index).find(|index| f64::from(index.0) == *number);

@@ -104,7 +104,7 @@ fn the_nearest_type_and_the_nearest_word_are_suggested() {
     let found = reported(&with_nodes(r#""a": ncloth(inputMesh: "p"), "p": polyPlane()"#));
     assert_eq!(found[0].2.as_deref(), Some("did you mean `nCloth`?"));
     let found = reported(&with_nodes(
-        r#""p": polyPlane(), "c": nCloth(inputMesh: "p", scalingRelation: worldspace)"#,
+        r#""p": polyPlane(), "c": nCloth(inputMesh: "p", scalingRelation: worldspase)"#,
     ));
     assert_eq!(found[0].2.as_deref(), Some("did you mean `worldSpace`?"));
 }
