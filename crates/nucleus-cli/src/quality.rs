@@ -8,7 +8,7 @@ use nucleus_cache::shell_word;
 use nucleus_graph::scene::Scene;
 use nucleus_measure::report;
 use nucleus_measure::result_cache::ResultCache;
-use nucleus_measure::trade::{Benchmark, Choice, Request, Setting, Trade, for_error};
+use nucleus_measure::trade::{Benchmark, Choice, Request, Setting, Trade, Wish};
 
 /// An error as a share: `1%`, `0.5 %` or `0.01`.
 pub fn error(text: &str) -> Result<f64, String> {
@@ -67,22 +67,16 @@ pub fn store(subject: &Benchmark) -> ResultCache {
 /// The scene at the cheapest stored setting with at most the error `wanted`, a description of it, and the setting.
 pub fn scene_at(scene: &Scene, name: &str, wanted: f64) -> Result<(Scene, String, Setting)> {
     let subject = Benchmark::new(scene)?;
+    let word = shell_word(Path::new(name));
     let trade = Trade::load(&store(&subject))?.with_context(|| {
-        let word = shell_word(Path::new(name));
         format!("there are no stored results for `{name}` and this solver: run `nucleus trade {word}` first")
     })?;
-    let point = match for_error(&trade, &Request::every(wanted)) {
-        Choice::Found(point) => point,
-        Choice::Nearest(point) | Choice::Unresolved(point) => bail!(
-            "no setting of `{name}` reaches {}; the nearest meets {}, with {}",
-            report::percent(wanted),
-            report::percent(point.error.unwrap_or_default()),
-            point.setting
-        ),
-        Choice::None => bail!(
-            "no setting of `{name}` is recommended: see the output of `nucleus trade {}`",
-            shell_word(Path::new(name))
-        ),
+    let wish = Wish::Error(Request::every(wanted));
+    let Choice::Found(point) = wish.choose(&trade) else {
+        // Its sentences name the setting that is nearest and the quantities in which it misses the error.
+        let reason = report::recommendation(&trade, &wish).trim_end().replace('\n', "; ");
+        let error = report::percent(wanted).replace(' ', "");
+        bail!("`{name}`: {reason}; `nucleus trade {word} --error {error} --thorough` looks for others")
     };
     let error = report::percent(point.error.unwrap_or_default());
     let description = format!(

@@ -221,6 +221,16 @@ fn a_found_setting_serves_run_quality_and_is_written_into_the_scene() {
     let run = nucleus(folder.path(), &["run", "drape.ron", "--quality", "50%", "--record", "none"]);
     assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
     assert!(stderr(&run).contains(" evaluations in "), "{}", stderr(&run));
+    let exact = nucleus(folder.path(), &["run", "drape.ron", "--quality", "0.0001%", "--record", "none"]);
+    let said = stderr(&exact);
+    assert_eq!(exact.status.code(), Some(2), "{said}");
+    for part in [
+        "do not resolve an error of 0.0001 %",
+        "position below",
+        "`nucleus trade drape.ron --error 0.0001% --thorough`",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
 
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     let (scene, other) = (read("drape.ron"), read("other.ron"));
