@@ -237,6 +237,11 @@ impl RunStatistics {
         self.add_figures(figures);
     }
 
+    /// The largest mean excess of density of liquids, and its frame; `None` where no liquid is compressed, as without any.
+    pub fn volume_error(&self) -> Option<(f64, i32)> {
+        self.worst_compression.filter(|(error, _)| *error > 0.0)
+    }
+
     fn add_figures(&mut self, figures: &FrameStatistics) {
         let frame = figures.frame;
         if self.worst_strain.is_none_or(|(worst, _)| figures.max_strain > worst) {

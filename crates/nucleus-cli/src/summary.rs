@@ -113,6 +113,9 @@ impl Summary<'_> {
                 false => writeln!(text, "minimum gap at least the thickness; larger gaps are not measured")?,
             }
         }
+        if let Some((error, frame)) = statistics.volume_error() {
+            writeln!(text, "worst volume error of liquids {} at frame {frame}", figures::percent(error))?;
+        }
         if statistics.particles.most > 0 {
             let Count { most, frame, end, .. } = statistics.particles;
             writeln!(text, "{}, most at frame {frame}: {most}", figures::count(end as usize, "particle"))?;
@@ -211,6 +214,7 @@ impl Summary<'_> {
             "worst_strain": at(statistics.worst_strain),
             "worst_strain_99": at(statistics.worst_strain_99),
             "smallest_gap": at(statistics.smallest_gap),
+            "worst_volume_error": at(statistics.volume_error()),
             "pairs_unresolved": statistics.pairs_unresolved.total,
             "most_unresolved": most(&statistics.pairs_unresolved),
             "depenetrating": over_run(&statistics.depenetrating),

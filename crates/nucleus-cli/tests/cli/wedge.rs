@@ -54,6 +54,43 @@ fn a_wedge_runs_every_row_and_writes_a_page_and_a_table() {
 }
 
 #[test]
+fn the_table_has_the_volume_error_of_a_liquid_and_none_without_one() {
+    let folder = folder();
+    scene(folder.path(), 3, "finite");
+    let column = |folder: &Path| {
+        let table = table(folder);
+        let at = table[0].iter().position(|head| head == "volume error").expect("the column is there");
+        table[1..].iter().map(|row| row[at].clone()).collect::<Vec<_>>()
+    };
+    let dry = nucleus(folder.path(), &["wedge", "drape.ron", "--vary", "cloth1.friction=0.1", "--out", "w"]);
+    assert!(dry.status.success(), "{}", stderr(&dry));
+    assert_eq!(column(folder.path()), [""]);
+
+    let water = r#"Scene(time: (start: 1, end: 12, fps: 24), nodes: {
+        "nucleus1": nucleus(spaceScale: 0.01, usePlane: true, evaluations: 16),
+        "water": nParticle(enableSPH: true, minimumCorner: (-2, 1, -2), maximumCorner: (2, 5, 2), radius: 0.6,
+            pointMass: 0.00045, drag: 0),
+    }, checks: [finite, volumeError(frame: 2, share: 0.5)])"#;
+    let wet = folder.path().join("wet");
+    fs::create_dir(&wet).unwrap();
+    fs::write(wet.join("water.ron"), water).unwrap();
+    let output = nucleus(&wet, &["wedge", "water.ron", "--vary", "water.viscosity=0,1", "--out", "w"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let errors: Vec<f64> = column(&wet).iter().map(|error| error.parse().expect("a number")).collect();
+    assert_eq!(errors.len(), 2);
+    // The check reports the same figure.
+    let run = nucleus(&wet, &["run", "water.ron", "--set", "water.viscosity=0", "--record", "none"]);
+    let said = stdout(&run);
+    let at = |before: &str| -> f64 {
+        let rest = said.split(before).nth(1).unwrap_or_else(|| panic!("{before}: {said}"));
+        rest.split(' ').next().unwrap().parse().unwrap()
+    };
+    let by_check = at("share: 0.5): passed with ");
+    assert!((errors[0] / by_check - 1.0).abs() < 1e-3, "{errors:?} and {by_check}");
+    assert!((at("worst volume error of liquids ") / (100.0 * by_check) - 1.0).abs() < 1e-2, "{said}");
+}
+
+#[test]
 fn the_table_counts_the_frames_that_a_resumed_run_kept() {
     let folder = folder();
     scene(folder.path(), 12, "");

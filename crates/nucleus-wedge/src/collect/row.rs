@@ -74,13 +74,14 @@ impl std::fmt::Display for Counts {
 pub type Figure = (&'static str, fn(&RunResult) -> Value);
 
 /// The figures of a run, in the order of the columns.
-pub const FIGURES: [Figure; 12] = [
+pub const FIGURES: [Figure; 13] = [
     ("frames", |result| result.figure("frames").clone()),
     ("last frame", |result| result.figure("last").clone()),
     ("ms/frame", |result| result.solved().and_then(|solved| solved.milliseconds()).into()),
     ("frames timed", |result| result.solved().map(|solved| solved.frames).into()),
     ("worst strain", |result| result.figure("worst_strain")["value"].clone()),
     ("smallest gap", |result| result.figure("smallest_gap")["value"].clone()),
+    ("volume error", |result| result.figure("worst_volume_error")["value"].clone()),
     ("unresolved pairs", |result| result.figure("pairs_unresolved").clone()),
     ("points in colliders", |result| result.figure("depenetrating")["most"].clone()),
     ("intersections", |result| result.figure("intersections")["most"].clone()),
