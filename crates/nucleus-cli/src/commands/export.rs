@@ -9,6 +9,7 @@ use nucleus_cache::{Playback, atomic_file, shell_word};
 use nucleus_interop::{Format, Request, Selection, export};
 use nucleus_maya::{maya_ascii, value_files};
 
+use crate::object_names;
 use crate::options::{self, FrameRange};
 use crate::process::Outcome;
 use crate::progress::ShareProgress;
@@ -38,7 +39,7 @@ pub struct Export {
     /// Export recorded substeps too.
     #[arg(long)]
     substeps: bool,
-    /// Export only this object; may be given several times.
+    /// Export only this object, by its name or a pattern with `*` and `?`; may be given several times.
     #[arg(long, value_name = "NAME")]
     object: Vec<String>,
     /// Factor for all lengths, to convert them to another unit: 0.01 makes metres of centimetres. The real size is kept, so
@@ -110,8 +111,13 @@ impl Export {
         let frames = self.frames.map(|frames| {
             frames.within(start).context("the frame range exceeds the largest frame number, 2147483647")
         });
+        let mut objects: Vec<String> = Vec::new();
+        for pattern in &self.object {
+            let found = object_names::matching(&cache, "--object", pattern)?;
+            objects.extend(found.into_iter().filter(|name| !objects.contains(name)).collect::<Vec<_>>());
+        }
         let selection = Selection {
-            objects: self.object.clone(),
+            objects,
             frames: frames.transpose()?,
             every: self.every,
             substeps: self.substeps,

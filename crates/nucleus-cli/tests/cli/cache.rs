@@ -27,7 +27,7 @@ fn an_export_that_is_not_possible_lists_the_choices() {
     cache(folder.path());
     let export = |more: &[&str]| nucleus(folder.path(), &[&["export", "fall.mcap"], more].concat());
     assert_refused(&export(&[]), "give `--as` one of obj, ply, pc2");
-    assert_refused(&export(&["--as", "obj", "--object", "shirt"]), "it has `sheet`");
+    assert_refused(&export(&["--as", "obj", "--object", "shirt"]), "there are `sheet`");
     assert_refused(&export(&["--as", "obj", "--frames", "90..99"]), "the cache has 1 to 6");
 }
 

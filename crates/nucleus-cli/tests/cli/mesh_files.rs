@@ -76,7 +76,7 @@ fn an_animated_gltf_or_usd_moves_a_collider_as_the_cloth_that_was_exported() {
 fn a_sequence_of_ply_files_moves_a_collider_as_the_cloth_that_was_exported() {
     let folder = folder();
     let expected = run(folder.path());
-    export(folder.path(), &["--as", "ply", "-o", "sheets", "--object", "cloth1"]);
+    export(folder.path(), &["--as", "ply", "-o", "sheets", "--object", "cloth*", "--object", "cloth1"]);
     assert_close(&collider(folder.path(), "sheets/cloth1.####.ply", ""), &expected);
 }
 
