@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use nucleus_cache::{ObjectKind, OpenError, Playback, ReadError, shell_word};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::first_frame_warnings;
@@ -202,6 +202,25 @@ pub fn with_remedy(error: anyhow::Error, path: &Path, option: &str) -> anyhow::E
         "{error:#}; `{option}` selects other frames, and `nucleus recover {}` writes the intact ones as another cache",
         shell_word(path)
     )
+}
+
+/// First and last frame of a range of `--frames`; prints a warning if the cache ends before the range or begins after its start.
+///
+/// # Errors
+/// If the cache holds no frame, or the range exceeds the largest number.
+pub fn frames_of(range: FrameRange, cache: &Playback, path: &Path) -> Result<(i32, i32)> {
+    let moments = cache.time_samples();
+    let (Some(begin), Some(end)) = (moments.first(), moments.last()) else {
+        bail!("the cache holds no frame")
+    };
+    let (first, last) =
+        range.within(begin.frame).context("the frame range exceeds the largest frame number, 2147483647")?;
+    let overlaps = first <= end.frame && last >= begin.frame;
+    if overlaps && (first < begin.frame || last > end.frame) {
+        let (begin, end) = (begin.frame, end.frame);
+        say!("warning: `{}` holds frames {begin} to {end} alone, not {first} to {last}", path.display());
+    }
+    Ok((first, last))
 }
 
 /// Opens a cache and prints a warning if parts of it are lost.

@@ -232,6 +232,18 @@ fn the_automatic_camera_is_that_of_the_whole_run_for_any_selection_of_frames() {
 }
 
 #[test]
+fn every_nth_frame_of_a_range_is_counted_from_its_first() {
+    let (_folder, mut cache) = recorded(Sample::default());
+    let first = cache.time_samples()[0].frame;
+    let mut film = Film::of(&mut cache, 10, small()).unwrap().between(first + 4, first + 20).unwrap();
+    assert_eq!(film.len(), 2);
+    let drawn = film.picture(0).unwrap();
+    let expected =
+        Film::of(&mut cache, 1, small()).unwrap().between(first + 4, first + 4).unwrap().picture(0).unwrap();
+    assert_eq!(drawn, expected);
+}
+
+#[test]
 fn the_floor_is_the_tilted_ground_plane_of_the_scene() {
     let (_folder, mut cache) = recorded(Sample { plane: Some(-1.5), tilt: 0.5, ..Sample::default() });
     let camera =

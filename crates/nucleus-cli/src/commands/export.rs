@@ -107,10 +107,8 @@ impl Export {
         let (format, out) = self.target()?;
         files::refuse_own_input(&self.file, &out)?;
         self.check_options(&cache)?;
-        let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
-        let frames = self.frames.map(|frames| {
-            frames.within(start).context("the frame range exceeds the largest frame number, 2147483647")
-        });
+        ensure!(!cache.time_samples().is_empty(), "the cache holds no frame");
+        let frames = self.frames.map(|frames| files::frames_of(frames, &cache, &self.file));
         let mut objects: Vec<String> = Vec::new();
         for pattern in &self.object {
             let found = object_names::matching(&cache, "--object", pattern)?;

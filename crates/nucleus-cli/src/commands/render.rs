@@ -158,14 +158,12 @@ impl Render {
     }
 
     fn film(&self, cache: &mut Playback, out: &Path, kind: OutputKind) -> Result<String> {
-        let start = cache.time_samples().first().context("the cache holds no frame")?.frame;
+        ensure!(!cache.time_samples().is_empty(), "the cache holds no frame");
         let scene_camera = self.scene_camera(cache)?;
+        let frames = self.frames.map(|frames| files::frames_of(frames, cache, &self.file)).transpose()?;
         let mut film = Film::of(cache, self.every.unwrap_or(1) as usize, self.style(cache, out)?)?;
-        if let Some(frames) = self.frames {
-            let (first, last) = frames
-                .within(start)
-                .context("the frame range exceeds the largest frame number, 2147483647")?;
-            film = film.between(first, last).context("none of these frames was recorded")?;
+        if let Some((first, last)) = frames {
+            film = film.between(first, last).with_context(|| format!("frames {first} to {last}"))?;
         }
         let recorded = film.len();
         if kind == OutputKind::Gif {

@@ -31,6 +31,8 @@ pub struct Film<'a, R> {
     cache: &'a mut Playback<R>,
     /// The recorded times that are shown, as indices into the cache.
     moments: Vec<usize>,
+    /// Of how many recorded frames one is shown.
+    every: usize,
     camera: Camera,
     /// A camera of the scene that replaces `camera`.
     scene_camera: Option<nucleus_cache::Camera>,
@@ -69,16 +71,28 @@ impl<'a, R: Read + Seek> Film<'a, R> {
         let style = Style { ground, ..style };
         let (scene_camera, fragments) = (None, Vec::new());
         let spacings = spacings(cache, &style).map_err(|source| ViewError::Read { source })?;
-        Ok(Self { cache, moments, camera, scene_camera, stage, style, is_ground_plane, spacings, fragments })
+        Ok(Self {
+            cache,
+            moments,
+            every,
+            camera,
+            scene_camera,
+            stage,
+            style,
+            is_ground_plane,
+            spacings,
+            fragments,
+        })
     }
 
-    /// Keeps the frames from `first` to `last`; the camera stays that of the whole run.
+    /// Takes every `every`th of the recorded frames from `first` to `last` instead; the camera stays that of the whole run.
     ///
     /// # Errors
     /// If none of them was recorded.
     pub fn between(mut self, first: i32, last: i32) -> Result<Self, ViewError> {
-        let moments = self.cache.time_samples();
-        self.moments.retain(|&moment| (first..=last).contains(&moments[moment].frame));
+        let moments = self.cache.time_samples().iter().enumerate();
+        let within = moments.filter(|(_, at)| at.ends_frame() && (first..=last).contains(&at.frame));
+        self.moments = within.map(|(moment, _)| moment).step_by(self.every).collect();
         if self.moments.is_empty() { Err(ViewError::NoRecordedFrame) } else { Ok(self) }
     }
 
