@@ -10,6 +10,7 @@ mod contact_locality;
 mod contact_response;
 mod crowded_liquids;
 mod driven_liquids;
+mod drops;
 mod every_number;
 mod features;
 mod fields;

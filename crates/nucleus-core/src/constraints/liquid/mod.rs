@@ -45,11 +45,12 @@ use crate::particles::population::Population;
 use crate::schedule::{StepInterval, TimeStep};
 use crate::state::State;
 
-use density::{Density, Load};
+use density::{Accept, Density, Load};
 use excess::Excess;
 use find_walls::WallSearch;
 use neighbours::{CHUNK, Neighbours, chunk_range};
 use step::{LiquidScene, LiquidStep};
+use surface_tension::SurfaceTension;
 use time_step::{LiquidInterval, LiquidMotion};
 use viscosity::Viscosity;
 use walls::Walls;
@@ -64,14 +65,15 @@ pub struct LiquidSolver {
     walls: Walls,
     density: Density,
     viscosity: Viscosity,
+    surface_tension: SurfaceTension,
     /// Multiplier of each particle over the squared time step.
     pressure: Vec<f32>,
     excess: Excess,
     positions: Vec<[f32; 3]>,
     velocities: Vec<[f32; 4]>,
     loads: Vec<Load>,
-    /// Factors on viscosity and on surface tension, in the sorted order; empty where they are 1.
-    factors: [Vec<f32>; 2],
+    /// Factors on viscosity, in the sorted order; empty where they are 1.
+    factors: Vec<f32>,
     /// Where lengths are taken from in this frame, in metres.
     origin: Vector3<f64>,
     density_error: f64,
@@ -211,11 +213,16 @@ impl LiquidSolver {
 
     /// Computes the load of the pressure solver, after viscosity and surface tension.
     fn load<R: Real>(&mut self, first: u32, state: &State<R>, step: &LiquidStep, pool: &ThreadPool) {
-        self.take_factors(state.population_of(step.cloth));
+        let [thickens, pulls] =
+            state.population_of(step.cloth).map_or([&[][..]; 2], Population::liquid_factors);
         if step.settings.viscosity > 0.0 {
+            self.take_factors(thickens);
             self.apply_viscosity(first, state, step, pool);
         }
-        let Self { neighbours, density, viscosity, pressure, excess, loads, factors, .. } = self;
+        if step.settings.surface_tension > 0.0 {
+            self.surface_tension.find(&self.positions, pulls, pool);
+        }
+        let Self { neighbours, density, viscosity, surface_tension, pressure, excess, loads, .. } = self;
         let LiquidStep { settings, h, .. } = *step;
         let order = neighbours.grid.order();
         let per_metre = 1.0 / settings.spacing;
@@ -239,7 +246,7 @@ impl LiquidSolver {
                     moved = std::array::from_fn(|axis| viscosity.change[at][axis] * h as f32);
                 }
                 if tension > 0.0 {
-                    let pulled = surface_tension::acceleration(neighbours, chunk, k, &factors[1]);
+                    let pulled = surface_tension.pull[particle as usize];
                     (0..3).for_each(|axis| moved[axis] += pull * pulled[axis]);
                 }
                 let now = neighbours.sums[at][0] - 1.0;
@@ -260,15 +267,12 @@ impl LiquidSolver {
         });
     }
 
-    /// Takes up the factors by particle on viscosity and surface tension, in the sorted order.
-    fn take_factors(&mut self, population: Option<&Population>) {
-        let by_particle = population.map_or([&[][..]; 2], Population::liquid_factors);
-        for (factors, by_particle) in self.factors.iter_mut().zip(by_particle) {
-            factors.clear();
-            if !by_particle.is_empty() {
-                let order = self.neighbours.grid.order();
-                factors.extend(order.iter().map(|&particle| by_particle[particle as usize]));
-            }
+    /// Takes up the factors by particle on viscosity, in the sorted order.
+    fn take_factors(&mut self, by_particle: &[f32]) {
+        self.factors.clear();
+        if !by_particle.is_empty() {
+            let order = self.neighbours.grid.order();
+            self.factors.extend(order.iter().map(|&particle| by_particle[particle as usize]));
         }
     }
 
@@ -289,7 +293,7 @@ impl LiquidSolver {
             [x, y, z, 0.0]
         }));
         let rate = (step.settings.viscosity * step.h * (per_metre * per_metre)) as f32;
-        viscosity.solve(neighbours, velocities, (&factors[0], rate), pool);
+        viscosity.solve(neighbours, velocities, (factors, rate), pool);
     }
 
     /// Solves for the pressure, and moves the particles and the cloth beside them.
@@ -301,7 +305,8 @@ impl LiquidSolver {
         let sound = SOFT_SOUND * settings.incompressibility / softness.max(1e-9);
         let compliance = settings.spacing / (h * sound).max(1e-9);
         let compliance = if softness > 0.0 { (compliance * compliance).min(1e12) as f32 } else { 0.0 };
-        density.solve(neighbours, loads, walls, compliance, pool);
+        let accept = if settings.surface_tension > 0.0 { Accept::Residual } else { Accept::Excess };
+        density.solve(neighbours, loads, walls, (compliance, accept), pool);
         let displacement = &mut state.displacement;
         let in_step = (h - ahead) / h;
         let metres = |moved: f32| R::from_f64(f64::from(moved) * settings.spacing * in_step);

@@ -221,7 +221,7 @@ fn add_pull<W: Lanes<f32, Array = [[f32; 4]; 2]>>(
 }
 
 /// The mean of the factors of two particles, so that both feel the same force.
-pub fn pair_factor(factors: &[f32], [a, b]: [usize; 2]) -> f32 {
+fn pair_factor(factors: &[f32], [a, b]: [usize; 2]) -> f32 {
     if factors.is_empty() { 1.0 } else { (factors[a] + factors[b]) * 0.5 }
 }
 
