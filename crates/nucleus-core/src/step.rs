@@ -23,6 +23,7 @@ use crate::constraints::link::pass::{begin_links, form_links, relax_links};
 use crate::constraints::link::surface::slide_links;
 use crate::constraints::link::velocity::{apply_link_forces, damp_links, drag_links};
 use crate::constraints::liquid::LiquidSolver;
+use crate::constraints::liquid::coincident::separate;
 use crate::constraints::liquid::step::LiquidScene;
 use crate::constraints::sweep::sweep;
 use crate::constraints::whole;
@@ -143,6 +144,7 @@ fn begin_frame<R: CompiledReal>(solver: &mut Solver<R>, frame: &FrameInput, h: f
             cloth.points().for_each(|row| solver.state.hold(row));
         }
     }
+    separate(&solver.model, &mut solver.state, &mut solver.contact, frame);
     record_start_gaps(&solver.model, &mut solver.state, &mut solver.contact, frame);
     update_anchors(&mut solver.model.cloths, &solver.state.anchor, &solver.pool);
     for (at, motion) in frame.colliders.iter().enumerate() {

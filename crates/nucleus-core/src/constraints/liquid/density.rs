@@ -140,7 +140,7 @@ impl Density {
         self.sums.resize(chunks, Sums::default());
     }
 
-    /// The diagonal of J w Jᵀ + α.
+    /// The diagonal of J w Jᵀ + α; and the multipliers, as far as they have a gradient.
     fn find_diagonal(
         &mut self,
         neighbours: &Neighbours,
@@ -149,8 +149,8 @@ impl Density {
         compliance: f32,
         pool: &ThreadPool,
     ) {
-        let [diagonal, compliances] =
-            [&mut self.diagonal, &mut self.compliances].map(|column| DisjointSlice::new(column));
+        let [diagonal, compliances, lambda] = [&mut self.diagonal, &mut self.compliances, &mut self.lambda]
+            .map(|column| DisjointSlice::new(column));
         let all_free = loads.iter().all(|load| load.inverse_mass == 1.0);
         let mobility = |pair: &Pair| {
             let [x, y, z] = pair.gradient();
@@ -160,8 +160,10 @@ impl Density {
             let range = chunk_range(chunk, loads.len());
             // SAFETY: chunks do not overlap.
             #[allow(unsafe_code)]
-            let (out, compliances) = unsafe { (diagonal.run(range.clone()), compliances.run(range.clone())) };
-            for (k, (out, yields)) in out.iter_mut().zip(compliances).enumerate() {
+            let (out, compliances, lambda) = unsafe {
+                (diagonal.run(range.clone()), compliances.run(range.clone()), lambda.run(range.clone()))
+            };
+            for (k, ((out, yields), lambda)) in out.iter_mut().zip(compliances).zip(lambda).enumerate() {
                 let at = range.start as usize + k;
                 let own = neighbours.sum(at);
                 let own = loads[at].inverse_mass * (own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
@@ -170,7 +172,11 @@ impl Density {
                     false => neighbours.of(chunk, k).iter().map(mobility).sum(),
                 };
                 let mobility = own + others + walls.mobility(neighbours.walls_of(chunk, k));
-                *yields = compliance + (LEAST_DIAGONAL - mobility).max(0.0);
+                let lack = (LEAST_DIAGONAL - mobility).max(0.0);
+                *yields = compliance + lack;
+                // The pressure of the time step before grew against compliance, as far as there was no gradient. Once there
+                // is one it would throw the particles off.
+                *lambda *= 1.0 - lack / LEAST_DIAGONAL;
                 *out = mobility + *yields;
             }
         });

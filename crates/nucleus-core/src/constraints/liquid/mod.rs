@@ -13,12 +13,14 @@
 //! | the kernel, and that of a half-space | [`kernel`] |
 //! | neighbour search | [`grid`], [`neighbours`], [`near`], [`pair`] |
 //! | density, and the solver of pressure | [`density`] |
+//! | particles that begin in one place | [`coincident`] |
 //! | how fast an excess of density goes | [`excess`] |
 //! | ground plane, colliders, cloth and other particles beside a liquid | `find_walls`, [`walls`], `wall_samples`, [`ball`] |
 //! | viscosity and surface tension | [`viscosity`], `connected_bodies`, [`surface_tension`] |
 //! | how long its time steps are | [`time_step`] |
 
 pub mod ball;
+pub mod coincident;
 mod connected_bodies;
 pub mod density;
 pub mod excess;
