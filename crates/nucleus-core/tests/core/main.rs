@@ -26,6 +26,7 @@ mod lifecycle;
 mod link_order;
 mod linked_particles;
 mod links;
+mod liquid_layers;
 mod liquids;
 mod never_stuck;
 mod overlaps;
