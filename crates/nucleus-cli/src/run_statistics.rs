@@ -48,6 +48,9 @@ pub struct FrameStatistics {
     /// Particles that were not born because there was no room.
     #[serde(default)]
     pub births_refused: u64,
+    /// Particles that were not born because they would have overlapped others.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub births_pruned: u64,
     /// Mean excess of density of liquids.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub density_error: f64,
@@ -99,6 +102,7 @@ impl FrameStatistics {
             max_weld_gap,
             particles,
             births_refused,
+            births_pruned,
             density_error,
             kinetic_energy,
             finite,
@@ -124,6 +128,7 @@ impl FrameStatistics {
             max_weld_gap,
             particles,
             births_refused,
+            births_pruned,
             density_error,
             kinetic_energy,
             finite,
@@ -150,6 +155,7 @@ impl FrameStatistics {
             max_weld_gap: self.max_weld_gap,
             particles: self.particles,
             births_refused: self.births_refused,
+            births_pruned: self.births_pruned,
             density_error: self.density_error,
             kinetic_energy: self.kinetic_energy,
             finite: self.finite,
@@ -188,6 +194,8 @@ pub struct RunStatistics {
     pub particles: Count,
     /// Particles that were not born because there was no room.
     pub births_refused: Count,
+    /// Particles that were not born because they would have overlapped others.
+    pub births_pruned: Count,
     /// The first frame with a position or velocity that is not finite.
     pub not_finite: Option<i32>,
     /// Input values that were replaced, over all frames.
@@ -263,6 +271,7 @@ impl RunStatistics {
         self.intersections.add(figures.intersections, frame);
         self.particles.add(figures.particles, frame);
         self.births_refused.add(figures.births_refused, frame);
+        self.births_pruned.add(figures.births_pruned, frame);
         self.sanitized += figures.sanitized;
         self.first_sanitized = self.first_sanitized.or(figures.first_sanitized.map(|input| (input, frame)));
         if !figures.finite {

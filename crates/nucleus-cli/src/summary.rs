@@ -128,6 +128,13 @@ impl Summary<'_> {
                  touched the place"
             )?;
         }
+        if statistics.births_pruned.total > 0 {
+            let count = figures::count(statistics.births_pruned.total as usize, "particle");
+            writeln!(
+                text,
+                "{count} not emitted: they would have overlapped others (`emissionOverlapPruning`)"
+            )?;
+        }
         if let Some((input, frame)) = statistics.first_sanitized {
             let count = figures::count(statistics.sanitized as usize, "value");
             writeln!(text, "frame {frame}: {} ({count} sanitized in all)", self.sanitized(input))?;

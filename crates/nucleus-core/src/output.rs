@@ -237,6 +237,8 @@ pub struct StepReport {
     /// Particles that were not born because their object was full, they would touch too many others, or their position was
     /// invalid.
     pub births_refused: u64,
+    /// Particles that were not born because they would have overlapped others (`emissionOverlapPruning`).
+    pub births_pruned: u64,
     /// Mean excess of density of the particles of a liquid over that at rest, at the end of the frame; of several liquids
     /// the largest.
     pub density_error: f64,
@@ -271,6 +273,7 @@ impl Default for StepReport {
             births: 0,
             deaths: 0,
             births_refused: 0,
+            births_pruned: 0,
             density_error: 0.0,
             kinetic_energy: 0.0,
             finite: true,

@@ -28,10 +28,11 @@ pub struct ContactCounters {
     pub candidate_pairs: AtomicU64,
     /// Runs of the broad phase.
     pub broad_phases: AtomicU64,
-    /// Particles born, that died, and that were refused.
+    /// Particles born, that died, that were refused, and that were left out because they would overlap others.
     pub births: u64,
     pub deaths: u64,
     pub births_refused: u64,
+    pub births_pruned: u64,
 }
 
 impl ContactCounters {

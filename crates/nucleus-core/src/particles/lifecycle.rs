@@ -194,6 +194,7 @@ fn add_births<R: Real>(
             continue;
         }
         if occupancy.as_ref().is_some_and(|occupancy| occupancy.prunes(position)) {
+            counters.births_pruned += 1;
             continue;
         }
         counters.births += 1;

@@ -73,6 +73,7 @@ pub fn report<R: Real>(
         births: counters.births,
         deaths: counters.deaths,
         births_refused: counters.births_refused,
+        births_pruned: counters.births_pruned,
         density_error: solver.liquids.iter().map(LiquidSolver::density_error).fold(0.0, f64::max),
         kinetic_energy: points.kinetic_energy,
         finite: points.finite,

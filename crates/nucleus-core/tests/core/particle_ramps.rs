@@ -336,7 +336,8 @@ fn new_particles_that_would_overlap_are_left_out() {
             lifespan: f64::INFINITY,
         });
         let input = FrameInput { cloths: vec![cloth], births: births.collect(), ..frame(1, CLASSIC) };
-        solver.step(&input, &mut ());
+        let report = solver.step(&input, &mut ());
+        assert_eq!(report.births + report.births_pruned, 50);
         count(&solver)
     };
     // The contact distance is 0.2 m: along 1 m there is room for the one at 0 and five more, or ten at half of it.

@@ -217,6 +217,7 @@ pub(super) fn combined_report(a: &StepReport, b: &StepReport, are_consecutive: b
         births: a.births + b.births,
         deaths: a.deaths + b.deaths,
         births_refused: a.births_refused.saturating_add(b.births_refused),
+        births_pruned: a.births_pruned + b.births_pruned,
         density_error: if are_consecutive { b.density_error } else { a.density_error.max(b.density_error) },
         kinetic_energy: if are_consecutive { b.kinetic_energy } else { a.kinetic_energy + b.kinetic_energy },
         broken_links: if are_consecutive { b.broken_links } else { a.broken_links + b.broken_links },
