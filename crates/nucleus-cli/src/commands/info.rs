@@ -47,9 +47,12 @@ impl Info {
         } else {
             None
         };
+        let ranges = particle_ranges(&mut cache, is_verified)?;
         match self.json {
-            true => output::print_json(&as_json(&cache, sizes.as_ref()))?,
-            false => output::print(&as_text(&self.file.display().to_string(), &cache, sizes.as_ref())?)?,
+            true => output::print_json(&as_json(&cache, sizes.as_ref(), &ranges))?,
+            false => {
+                output::print(&as_text(&self.file.display().to_string(), &cache, sizes.as_ref(), &ranges)?)?
+            }
         }
         Ok(if cache.corruption().is_intact() { Outcome::Success } else { Outcome::Problem })
     }
@@ -67,8 +70,44 @@ impl Info {
     }
 }
 
+/// The least and the largest number of particles of an object over the recorded times.
+type ParticleRange = Option<[usize; 2]>;
+
+/// That of each object whose particles are born and die; `None` for others, and where frames are not read.
+fn particle_ranges(cache: &mut Playback, is_read: bool) -> Result<Vec<ParticleRange>> {
+    let varies = is_read && cache.run().particles;
+    let mut ranges = Vec::new();
+    for object in 0..cache.objects().len() {
+        let mut range: ParticleRange = None;
+        if varies && cache.objects()[object].kind == ObjectKind::Particles {
+            for moment in 0..cache.time_samples().len() {
+                // A damaged frame is reported as lost.
+                let Ok(positions) = cache.positions(object, moment) else { continue };
+                let count = positions.len();
+                let [least, most] = range.unwrap_or([count; 2]);
+                range = Some([least.min(count), most.max(count)]);
+            }
+        }
+        ranges.push(range);
+    }
+    Ok(ranges)
+}
+
+/// `20 points`; of particles that are born and die, `0 to 479 points`.
+fn points(object: &ObjectInfo, range: ParticleRange) -> String {
+    match range {
+        Some([least, most]) if least < most => format!("{least} to {}", figures::count(most, "point")),
+        _ => figures::count(object.rest.len(), "point"),
+    }
+}
+
 /// The content of a cache as text.
-fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<String, std::fmt::Error> {
+fn as_text(
+    name: &str,
+    cache: &Playback,
+    sizes: Option<&Sizes>,
+    ranges: &[ParticleRange],
+) -> Result<String, std::fmt::Error> {
     let run = cache.run();
     let mut text = String::new();
     let scene = if run.scene_path.is_empty() { "an unnamed scene" } else { &run.scene_path };
@@ -108,7 +147,7 @@ fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<String
     }
     for (place, object) in cache.objects().iter().enumerate() {
         let [x, y, z] = size(object, run.units_per_metre).map(figures::number);
-        let points = figures::count(object.rest.len(), "point");
+        let points = points(object, ranges[place]);
         let faces = figures::count(object.faces.len(), "face");
         writeln!(
             text,
@@ -134,7 +173,7 @@ fn as_text(name: &str, cache: &Playback, sizes: Option<&Sizes>) -> Result<String
 }
 
 /// The content of a cache as JSON.
-fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
+fn as_json(cache: &Playback, sizes: Option<&Sizes>, ranges: &[ParticleRange]) -> serde_json::Value {
     let run = cache.run();
     let names = |what: &str, object: &ObjectInfo| -> Vec<&str> {
         let all = face_sets(run, object).filter(|(kind, _)| *kind == what);
@@ -149,6 +188,9 @@ fn as_json(cache: &Playback, sizes: Option<&Sizes>) -> serde_json::Value {
                 "name": object.name,
                 "kind": kind(object.kind),
                 "points": object.rest.len(),
+                // Of particles that are born and die, over the recorded times.
+                "least_points": ranges[place].map(|[least, _]| least),
+                "most_points": ranges[place].map(|[_, most]| most),
                 "faces": object.faces.len(),
                 "groups": names("groups", object),
                 "materials": names("materials", object),
@@ -280,6 +322,19 @@ fn size(object: &ObjectInfo, units_per_metre: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn particles_that_are_born_are_counted_as_a_range() {
+        let object = ObjectInfo {
+            name: "drops".to_owned(),
+            kind: ObjectKind::Particles,
+            faces: Default::default(),
+            rest: Vec::new(),
+        };
+        assert_eq!(points(&object, Some([0, 479])), "0 to 479 points");
+        assert_eq!(points(&object, Some([0, 0])), "0 points");
+        assert_eq!(points(&object, None), "0 points");
+    }
 
     #[test]
     fn a_cache_that_was_not_read_is_not_called_intact() {
