@@ -17,10 +17,12 @@
 //! | the signed distance | `grid.rs` |
 //! | which edges of a cell one sheet crosses | `cell.rs` |
 //! | pieces without a particle inside | `pieces.rs` |
+//! | values of particles on their surface | `values.rs` |
 
 mod cell;
 mod grid;
 mod pieces;
+mod values;
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek};
@@ -60,7 +62,8 @@ impl<R: Read + Seek> Playback<R> {
 
     /// The spacing of an object's particles in scene units: the recorded rest distance of a liquid; else the edge of a cube with
     /// the volume of a particle of the recorded radius; else, in caches without radii, the median distance to the nearest other
-    /// where they are most, among some recorded times. `None` for other objects.
+    /// where they are most, among some recorded times. `None` for other objects, and for particles that are no liquid in a run
+    /// with a liquid: only that has a surface.
     ///
     /// # Errors
     /// If there is no such object, or a frame is damaged.
@@ -71,6 +74,9 @@ impl<R: Read + Seek> Playback<R> {
         }
         if let Some(&distance) = self.run().rest_distances.get(name).filter(|distance| **distance > 0.0) {
             return Ok(Some(distance as f32));
+        }
+        if self.run().rest_distances.values().any(|distance| *distance > 0.0) {
+            return Ok(None);
         }
         if let Some(&radius) = self.run().radii.get(name).filter(|radius| **radius > 0.0) {
             return Ok(Some(radius as f32 / RADIUS));

@@ -59,6 +59,9 @@ impl Sample {
     }
 }
 
+/// The surface of particles, with the velocities of its points if they are known.
+pub(crate) type MovingSurface = (LiquidSurface, Option<Vec<[f32; 3]>>);
+
 /// The objects and samples of a cache that are exported.
 pub struct Clip<'a, R> {
     cache: &'a mut Playback<R>,
@@ -85,7 +88,8 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         Ok(clip)
     }
 
-    /// The surface of an object's particles at a sample in exported units; `None` for all other objects.
+    /// The surface of an object's particles at a sample in exported units, and the velocities of its points if those of the
+    /// particles were recorded; `None` for all other objects.
     ///
     /// # Errors
     /// When the frame is damaged, or a coordinate is not finite.
@@ -93,11 +97,16 @@ impl<'a, R: Read + Seek> Clip<'a, R> {
         &mut self,
         object: usize,
         sample: usize,
-    ) -> Result<Option<LiquidSurface>, ExportError> {
+    ) -> Result<Option<MovingSurface>, ExportError> {
         let Some(spacing) = self.spacings[object] else { return Ok(None) };
         let spacing = (f64::from(spacing) * self.scale) as f32;
         let shape = self.cache.surface_shape(self.objects[object])?;
-        Ok(Some(LiquidSurface::of(&self.positions(object, sample)?, spacing, shape)))
+        let particles = self.positions(object, sample)?;
+        let surface = LiquidSurface::of(&particles, spacing, shape);
+        let scale = (spacing, shape.radius_scale);
+        let velocities = self.velocities(object, sample)?;
+        let velocities = velocities.map(|values| surface.values_of(&particles, scale, &values));
+        Ok(Some((surface, velocities)))
     }
 
     /// The objects with their first mesh, in the order of the cache.

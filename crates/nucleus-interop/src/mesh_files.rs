@@ -75,12 +75,12 @@ fn each_file<R: Read + Seek>(
         let frame = numbered(clip.samples(), sample);
         for (object, name) in names.iter().enumerate() {
             let mut file = output.file(folder.join(format!("{name}.{frame}.{end}")))?;
-            if let Some(LiquidSurface { positions, quads }) = clip.surface(object, sample)? {
+            if let Some((LiquidSurface { positions, quads }, velocities)) = clip.surface(object, sample)? {
                 let mut faces = Faces::default();
                 quads.iter().for_each(|quad| faces.push(quad));
                 let object = ObjectInfo { faces, ..clip.object(object).clone() };
                 let object = &object;
-                let (uvs, sets, velocities, particles) = (None, None, None, None);
+                let (uvs, sets, particles) = (None, None, None);
                 let mesh = MeshSample { object, positions, uvs, sets, velocities, particles };
                 write(&mut file, &mesh);
                 output.finish(file)?;

@@ -84,6 +84,27 @@ fn the_surface_of_balls_that_are_no_liquid_encloses_their_volume() {
     assert!((spacing.powi(3) / ball - 1.0).abs() < 1e-3, "{spacing}");
 }
 
+#[test]
+fn balls_beside_a_liquid_have_no_surface() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    let mut builder = ModelBuilder::new();
+    let objects = ["water", "balls"].map(|name| {
+        let surface = Surface { positions: vec![Vector3::zeros(), Vector3::x()], faces: Faces::default() };
+        let cloth = builder.cloth(Cloth::new(surface, Mass::PerPoint(1.0), ClothLists::NONE)).unwrap();
+        let rest = vec![[0.0; 3], [1.0, 0.0, 0.0]];
+        let (name, kind) = (name.to_owned(), ObjectKind::Particles);
+        (Source::Cloth(cloth), ObjectInfo { name, kind, faces: Faces::default(), rest })
+    });
+    let radii = ["water", "balls"].map(|name| (name.to_owned(), 0.1)).into();
+    let run = RunInfo { radii, rest_distances: [("water".to_owned(), 0.2)].into(), ..RunInfo::default() };
+    let mut recorder = Recorder::create(&path, &run, objects.into()).unwrap();
+    recorder.record_start(&Solver::<f32>::new(builder, 1)).unwrap();
+    recorder.finish().unwrap();
+    let mut cache = Playback::open(&path).unwrap();
+    assert_eq!([0, 1].map(|object| cache.particle_spacing(object).unwrap()), [Some(0.2), None]);
+}
+
 fn get(address: SocketAddr, path: &str) -> (String, Vec<u8>) {
     let mut stream = TcpStream::connect(address).unwrap();
     write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\n\r\n").unwrap();

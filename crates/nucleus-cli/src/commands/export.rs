@@ -46,7 +46,8 @@ pub struct Export {
     /// the unit that usda and usdc state changes with it; glb and foxglove are always in metres and take none.
     #[arg(long, default_value_t = 1.0, value_parser = options::positive)]
     scale: f64,
-    /// Export the surface of particles as a mesh (obj, ply): for liquids.
+    /// Export the surface of liquids as a mesh (obj, ply; ply with velocities, if they were recorded); of all particles where
+    /// none are a liquid.
     #[arg(long)]
     surface: bool,
     /// Replace existing files.
