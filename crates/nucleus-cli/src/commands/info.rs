@@ -131,11 +131,15 @@ fn as_text(
         None => writeln!(text, "  packed      not counted in a file of this size; `--verify` counts")?,
     }
     writeln!(text, "  lost        {}", lost(cache.corruption(), sizes.is_some()))?;
-    if let Some(last) = cache.checkpoints().last() {
-        let (count, size) = (cache.checkpoints().len(), figures::bytes(cache.checkpoint_bytes()));
+    let damaged = &cache.corruption().checkpoints;
+    let all = cache.checkpoints();
+    let intact: Vec<i32> = all.iter().copied().filter(|frame| !damaged.contains(frame)).collect();
+    if let Some(last) = intact.last() {
+        let of = if intact.len() < all.len() { format!(" of {} intact", all.len()) } else { String::new() };
+        let (count, size) = (intact.len(), figures::bytes(cache.checkpoint_bytes()));
         writeln!(
             text,
-            "  checkpoints {count}, the last of frame {last}, {size}; `nucleus resume` continues from it"
+            "  checkpoints {count}{of}, the last of frame {last}, {size}; `nucleus resume` continues from it"
         )?;
     }
     for (key, value) in &run.extra {

@@ -130,10 +130,15 @@ fn frames_that_a_scene_does_not_solve_are_not_missing() {
 fn a_damaged_checkpoint_or_frame_is_solved_again() {
     let folder = folder();
     let whole = whole(folder.path());
+    let mut damaged_checkpoints = 0;
     for at in (1..40).map(|k| whole.len() * k / 40) {
         let mut damaged = whole.clone();
         damaged[at] ^= 0x20;
         fs::write(folder.path().join("x.mcap"), &damaged).unwrap();
+        let info = stdout(&nucleus(folder.path(), &["info", "x.mcap"]));
+        let is_damaged = info.contains("damaged: the checkpoint of");
+        assert_eq!(info.contains("checkpoints 3 of 4 intact"), is_damaged, "byte {at}: {info}");
+        damaged_checkpoints += u32::from(is_damaged);
         let output = resume(folder.path(), &["--at", "11"]);
         match output.status.code() {
             Some(0) => {
@@ -147,6 +152,7 @@ fn a_damaged_checkpoint_or_frame_is_solved_again() {
             _ => assert!(stderr(&output).contains("error: "), "byte {at}: {}", stderr(&output)),
         }
     }
+    assert!(damaged_checkpoints > 0);
 }
 
 #[test]
