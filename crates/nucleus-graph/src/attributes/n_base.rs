@@ -233,7 +233,7 @@ node_table! {
     }
     "Internal" {
         /// Whether the object is solved (cloth, particles) or animated (colliders). Set when the node is created.
-        ACTIVE: bool = toggle("active", "actv", true).hidden().wiring("the type of a node says whether it is solved");
+        ACTIVE: bool = toggle("active", "actv", true).hidden().elsewhere("the type of a node says whether it is solved");
         /// Time of the previous evaluation.
         LAST_N_BASE_TIME: f64 = float("lastNBaseTime", "lnbt", 0.0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Outputs positions in the space of its own transform.

@@ -262,35 +262,35 @@ node_table! {
     }
     "Internal" {
         /// Red, for shaders.
-        COLOR_RED: f64 = float("colorRed", "clr", 0.0).output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        COLOR_RED: f64 = float("colorRed", "clr", 0.0).output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Green, for shaders.
-        COLOR_GREEN: f64 = float("colorGreen", "clg", 0.0).output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        COLOR_GREEN: f64 = float("colorGreen", "clg", 0.0).output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Blue, for shaders.
-        COLOR_BLUE: f64 = float("colorBlue", "clb", 0.0).output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        COLOR_BLUE: f64 = float("colorBlue", "clb", 0.0).output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the radius ramp, per particle.
-        INTERNAL_RADIUS_RAMP: Vec<f64> = floats("internalRadiusRamp", "inrr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_RADIUS_RAMP: Vec<f64> = floats("internalRadiusRamp", "inrr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the mass ramp, per particle.
-        INTERNAL_MASS_RAMP: Vec<f64> = floats("internalMassRamp", "inmr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_MASS_RAMP: Vec<f64> = floats("internalMassRamp", "inmr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the point field ramp, per particle.
-        INTERNAL_FIELD_SCALE_RAMP: Vec<f64> = floats("internalFieldScaleRamp", "infs").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_FIELD_SCALE_RAMP: Vec<f64> = floats("internalFieldScaleRamp", "infs").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the friction ramp, per particle.
-        INTERNAL_FRICTION_RAMP: Vec<f64> = floats("internalFrictionRamp", "infr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_FRICTION_RAMP: Vec<f64> = floats("internalFrictionRamp", "infr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the stickiness ramp, per particle.
-        INTERNAL_STICKINESS_RAMP: Vec<f64> = floats("internalStickinessRamp", "insr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_STICKINESS_RAMP: Vec<f64> = floats("internalStickinessRamp", "insr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the collide strength ramp, per particle.
-        INTERNAL_COLLIDE_STRENGTH_RAMP: Vec<f64> = floats("internalCollideStrengthRamp", "iclr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_COLLIDE_STRENGTH_RAMP: Vec<f64> = floats("internalCollideStrengthRamp", "iclr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the bounce ramp, per particle.
-        INTERNAL_BOUNCE_RAMP: Vec<f64> = floats("internalBounceRamp", "inbr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_BOUNCE_RAMP: Vec<f64> = floats("internalBounceRamp", "inbr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the viscosity ramp, per particle.
-        INTERNAL_VISCOSITY_RAMP: Vec<f64> = floats("internalViscosityRamp", "invr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_VISCOSITY_RAMP: Vec<f64> = floats("internalViscosityRamp", "invr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the surface tension ramp, per particle.
-        INTERNAL_SURFACE_TENSION_RAMP: Vec<f64> = floats("internalSurfaceTensionRamp", "istr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_SURFACE_TENSION_RAMP: Vec<f64> = floats("internalSurfaceTensionRamp", "istr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the opacity ramp, per particle.
-        INTERNAL_OPACITY_RAMP: Vec<f64> = floats("internalOpacityRamp", "inor").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_OPACITY_RAMP: Vec<f64> = floats("internalOpacityRamp", "inor").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the colour ramp, per particle.
-        INTERNAL_COLOR_RAMP: Vec<[f64; 3]> = vectors("internalColorRamp", "incr").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_COLOR_RAMP: Vec<[f64; 3]> = vectors("internalColorRamp", "incr").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
         /// Output of the incandescence ramp, per particle.
-        INTERNAL_INCANDESCENCE_RAMP: Vec<[f64; 3]> = vectors("internalIncandescenceRamp", "inir").output().hidden().wiring("Maya's shaders read it; the ramp itself is evaluated for each particle");
+        INTERNAL_INCANDESCENCE_RAMP: Vec<[f64; 3]> = vectors("internalIncandescenceRamp", "inir").output().hidden().elsewhere("Maya's shaders read it; the ramp itself is evaluated for each particle");
     }
     "Caching" {
         /// Attributes that a cache stores.

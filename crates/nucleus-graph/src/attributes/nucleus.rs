@@ -83,9 +83,9 @@ node_table! {
         /// Largest depth of a contact within the thickness.
         COLLISION_SOFTNESS: f64 = float("collisionSoftness", "clso", 0.0).min(0.0).max(1.0).hidden().unused();
         /// Kinds of element pairs that are tested between objects.
-        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden().wiring("the `collisionFlag` of each object counts");
+        COLLISION_FLAG: Choice = choice("collisionFlag", "cofl", 4, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace"), (8, "AllCombinations")]).hidden().elsewhere("the `collisionFlag` of each object counts");
         /// Kinds of element pairs that are tested within an object.
-        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace")]).hidden().wiring("the `selfCollisionFlag` of each object counts");
+        SELF_COLLISION_FLAG: Choice = choice("selfCollisionFlag", "scfl", 1, &[(0, "None"), (1, "Vertex"), (2, "VertexEdge"), (3, "VertexFace"), (4, "EdgeEdge"), (5, "EdgeFace")]).hidden().elsewhere("the `selfCollisionFlag` of each object counts");
     }
     "Connections" {
         /// Current state of each active object.

@@ -19,7 +19,7 @@ node_table! {
     PARTICLE = "particle", inherits None, hides [];
     "General" {
         /// Number of particles.
-        COUNT: i64 = int("count", "cnt", 0).output().wiring("an output that only Maya's expressions and shaders read");
+        COUNT: i64 = int("count", "cnt", 0).output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Includes the object in the simulation; Enable in Maya's attribute editor. Cloth that is not included follows its input mesh. Particles that are not included stay where they are, lose their velocity, age and die, and none are emitted. Other cloth collides with both. `enable` of the nucleus stops time, and keeps velocities and ages.
         IS_DYNAMIC: bool = toggle("isDynamic", "isd", true).solved("nucleus_graph::compile::input_mesh");
     }
@@ -43,19 +43,19 @@ node_table! {
         /// Velocities of the particles.
         VELOCITY: Vec<[f64; 3]> = vectors("velocity", "vel").elsewhere("only particles have initial places of their own; cloth has `startPositions`");
         /// Accelerations of the particles.
-        ACCELERATION: Vec<[f64; 3]> = vectors("acceleration", "acc").wiring("an output that only Maya's expressions and shaders read");
+        ACCELERATION: Vec<[f64; 3]> = vectors("acceleration", "acc").elsewhere("an output that only Maya's expressions and shaders read");
         /// Positions of the particles in world space.
-        WORLD_POSITION: Vec<[f64; 3]> = vectors("worldPosition", "wps").output().wiring("an output that only Maya's expressions and shaders read");
+        WORLD_POSITION: Vec<[f64; 3]> = vectors("worldPosition", "wps").output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Velocities of the particles in world space.
-        WORLD_VELOCITY: Vec<[f64; 3]> = vectors("worldVelocity", "wvl").output().wiring("an output that only Maya's expressions and shaders read");
+        WORLD_VELOCITY: Vec<[f64; 3]> = vectors("worldVelocity", "wvl").output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Mass of each particle.
-        MASS: Vec<f64> = floats("mass", "mas").wiring("an output that only Maya's expressions and shaders read");
+        MASS: Vec<f64> = floats("mass", "mas").elsewhere("an output that only Maya's expressions and shaders read");
         /// Identifier of each particle.
-        PARTICLE_ID: Vec<f64> = floats("particleId", "id").output().wiring("an output that only Maya's expressions and shaders read");
+        PARTICLE_ID: Vec<f64> = floats("particleId", "id").output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Time of birth of each particle.
-        BIRTH_TIME: Vec<f64> = floats("birthTime", "bt").output().wiring("an output that only Maya's expressions and shaders read");
+        BIRTH_TIME: Vec<f64> = floats("birthTime", "bt").output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Age of each particle.
-        AGE: Vec<f64> = floats("age", "ag").output().wiring("an output that only Maya's expressions and shaders read");
+        AGE: Vec<f64> = floats("age", "ag").output().elsewhere("an output that only Maya's expressions and shaders read");
     }
     "Emission Attributes" {
         /// Particles die when they leave the volume that they were emitted from.
@@ -79,7 +79,7 @@ node_table! {
         /// Lifespan of the particles: constant, or the mean of random ones. Maya adds the attribute when it creates particles.
         LIFESPAN: f64 = float("lifespan", "lifespan", 1.0).min(0.0).unit("s").solved("nucleus_graph::compile::emission").extension();
         /// Lifespan of each particle.
-        FINAL_LIFESPAN_PP: Vec<f64> = floats("finalLifespanPP", "flp").output().wiring("an output that only Maya's expressions and shaders read");
+        FINAL_LIFESPAN_PP: Vec<f64> = floats("finalLifespanPP", "flp").output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Seed of random lifespans.
         GENERAL_SEED: i64 = int("generalSeed", "gsd", 0).solved("nucleus_graph::compile::emission");
     }
@@ -127,7 +127,7 @@ node_table! {
         /// Positions, as the input of ramps.
         RAMP_POSITION: Vec<[f64; 3]> = vectors("rampPosition", "rps").wiring("Maya's evaluation keeps its state in it");
         /// Centroid of the particles.
-        CENTROID: [f64; 3] = vector("centroid", "ctd", [0.0, 0.0, 0.0], ["ctdx", "ctdy", "ctdz"]).output().wiring("an output that only Maya's expressions and shaders read");
+        CENTROID: [f64; 3] = vector("centroid", "ctd", [0.0, 0.0, 0.0], ["ctdx", "ctdy", "ctdz"]).output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Positions at the previous evaluation.
         LAST_POSITION: Vec<[f64; 3]> = vectors("lastPosition", "lpos").output().wiring("Maya's evaluation keeps its state in it");
         /// Velocities, as the input of ramps.
@@ -137,7 +137,7 @@ node_table! {
         /// Accelerations, as the input of ramps.
         RAMP_ACCELERATION: Vec<[f64; 3]> = vectors("rampAcceleration", "rac").wiring("Maya's evaluation keeps its state in it");
         /// Centroid of the particles in world space.
-        WORLD_CENTROID: [f64; 3] = vector("worldCentroid", "wctn", [0.0, 0.0, 0.0], ["wctx", "wcty", "wctz"]).output().wiring("an output that only Maya's expressions and shaders read");
+        WORLD_CENTROID: [f64; 3] = vector("worldCentroid", "wctn", [0.0, 0.0, 0.0], ["wctx", "wcty", "wctz"]).output().elsewhere("an output that only Maya's expressions and shaders read");
         /// World positions at the previous evaluation.
         LAST_WORLD_POSITION: Vec<[f64; 3]> = vectors("lastWorldPosition", "lwps").output().wiring("Maya's evaluation keeps its state in it");
         /// World velocities in object space.
@@ -145,7 +145,7 @@ node_table! {
         /// World velocities at the previous evaluation.
         LAST_WORLD_VELOCITY: Vec<[f64; 3]> = vectors("lastWorldVelocity", "lwvl").output().wiring("Maya's evaluation keeps its state in it");
         /// Initial emitter identifiers of the particles.
-        EMITTER_ID0: Vec<f64> = floats("emitterId0", "eid0").output().wiring("an output that only Maya's expressions and shaders read");
+        EMITTER_ID0: Vec<f64> = floats("emitterId0", "eid0").output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Starts from a frame of a cache of classic particles.
         USE_STARTUP_CACHE: bool = toggle("useStartupCache", "usc", false).wiring("only Maya's playback from memory uses it");
         /// Path of that cache.
@@ -185,11 +185,11 @@ node_table! {
         /// Ages kept in memory.
         AGE_CACHE: Vec<f64> = floats("ageCache", "agc").output().wiring("only Maya's playback from memory uses it");
         /// Emitter of each particle.
-        EMITTER_ID: Vec<f64> = floats("emitterId", "eid").output().wiring("an output that only Maya's expressions and shaders read");
+        EMITTER_ID: Vec<f64> = floats("emitterId", "eid").output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Whether collisions create events.
-        COLLISION_EVENTS: bool = toggle("collisionEvents", "cev", false).hidden().wiring("Maya sets it where there are events; the lists of events count");
+        COLLISION_EVENTS: bool = toggle("collisionEvents", "cev", false).hidden().elsewhere("Maya sets it where there are events; the lists of events count");
         /// Whether particles die.
-        DEATH: bool = toggle("death", "dth", false).hidden().wiring("Maya sets it where there are events; the lists of events count");
+        DEATH: bool = toggle("death", "dth", false).hidden().elsewhere("Maya sets it where there are events; the lists of events count");
         /// State of the random number generator.
         RAND_STATE: [f64; 3] = vector("randState", "rnst", [0.0, 0.0, 0.0], ["rstx", "rsty", "rstz"]).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether the creation expression runs.
@@ -265,9 +265,9 @@ node_table! {
         /// Offset from a classic collider.
         COLLISION_OFFSET: f64 = float("collisionOffset", "cof", 0.0).elsewhere("only classic collisions use it; here objects of a nucleus collide");
         /// Number of events so far.
-        TOTAL_EVENT_COUNT: i64 = int("totalEventCount", "tec", 0).output().wiring("an output that only Maya's expressions and shaders read");
+        TOTAL_EVENT_COUNT: i64 = int("totalEventCount", "tec", 0).output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Whether an event has happened.
-        EVENT_TEST: bool = toggle("eventTest", "evt", false).output().wiring("an output that only Maya's expressions and shaders read");
+        EVENT_TEST: bool = toggle("eventTest", "evt", false).output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Number of events up to the previous evaluation.
         LAST_TOTAL_EVENT_COUNT: i64 = int("lastTotalEventCount", "ltec", 0).wiring("Maya's evaluation keeps its state in it");
         /// Seed of the random numbers of events.
@@ -309,7 +309,7 @@ node_table! {
     }
     "Internal" {
         /// Sum of the forces of all fields, per particle.
-        FORCE: Vec<[f64; 3]> = vectors("force", "frc").output().hidden().wiring("an output that only Maya's expressions and shaders read");
+        FORCE: Vec<[f64; 3]> = vectors("force", "frc").output().hidden().elsewhere("an output that only Maya's expressions and shaders read");
         /// Identifier of the next particle.
         NEXT_ID: i64 = int("nextId", "nid", 0).hidden().wiring("Maya's evaluation keeps its state in it");
         /// Whether the largest number of particles is reached, which stops emitters.
@@ -351,7 +351,7 @@ node_table! {
         /// Surface of a classic collider.
         COLLISION_GEOMETRY: Plugged = plug("collisionGeometry", "cge", Data::Mesh).elsewhere("only classic collisions use it; here objects of a nucleus collide");
         /// Collisions of this evaluation.
-        COLLISION_RECORDS: Plugged = plug("collisionRecords", "crc", Data::Bundle).output().wiring("an output that only Maya's expressions and shaders read");
+        COLLISION_RECORDS: Plugged = plug("collisionRecords", "crc", Data::Bundle).output().elsewhere("an output that only Maya's expressions and shaders read");
         /// Particles that an event emits into.
         EVENT_TARGET: Plugged = plug("eventTarget", "etg", Data::Message).multi().elsewhere("events are counted through, and `eventParticles` names what they emit into");
         /// Names of events.

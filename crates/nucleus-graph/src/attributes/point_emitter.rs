@@ -59,15 +59,15 @@ node_table! {
         /// Inverts that texture.
         EMIT_FROM_DARK: bool = toggle("emitFromDark", "efd", false).solved("nucleus_graph::compile::emission").fixed();
         /// Sets the colour of new particles.
-        INHERIT_COLOR: bool = toggle("inheritColor", "inhc", false).wiring("the ramps of the nParticle give its colour and opacity");
+        INHERIT_COLOR: bool = toggle("inheritColor", "inhc", false).elsewhere("the ramps of the nParticle give its colour and opacity");
         /// Sets the opacity of new particles.
-        INHERIT_OPACITY: bool = toggle("inheritOpacity", "inho", false).wiring("the ramps of the nParticle give its colour and opacity");
+        INHERIT_OPACITY: bool = toggle("inheritOpacity", "inho", false).elsewhere("the ramps of the nParticle give its colour and opacity");
         /// Inverts that opacity.
-        INVERT_OPACITY: bool = toggle("invertOpacity", "invo", false).wiring("the ramps of the nParticle give its colour and opacity");
+        INVERT_OPACITY: bool = toggle("invertOpacity", "invo", false).elsewhere("the ramps of the nParticle give its colour and opacity");
         /// Uses luminance as opacity.
-        USE_LUMINANCE: bool = toggle("useLuminance", "usel", false).wiring("the ramps of the nParticle give its colour and opacity");
+        USE_LUMINANCE: bool = toggle("useLuminance", "usel", false).elsewhere("the ramps of the nParticle give its colour and opacity");
         /// Colour of new particles.
-        PARTICLE_COLOR: [f64; 3] = vector("particleColor", "pc", [0.5, 0.5, 0.5], ["pcr", "pcg", "pcb"]).min(0.0).max(1.0).wiring("the ramps of the nParticle give its colour and opacity");
+        PARTICLE_COLOR: [f64; 3] = vector("particleColor", "pc", [0.5, 0.5, 0.5], ["pcr", "pcg", "pcb"]).min(0.0).max(1.0).elsewhere("the ramps of the nParticle give its colour and opacity");
         /// Shape of the emission volume.
         VOLUME_SHAPE: Choice = choice("volumeShape", "vol", 0, &[(0, "Cube"), (1, "Sphere"), (2, "Cylinder"), (3, "Cone"), (4, "Torus")]).solved("nucleus_graph::compile::emission");
         /// Offset of the volume from the emitter.

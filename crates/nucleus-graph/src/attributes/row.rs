@@ -67,7 +67,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// Why an attribute of a Maya scene has no effect, as the end of a sentence; `None` if it is solved.
+    /// That an attribute has no effect, and why, as the end of a sentence; `None` if it is solved.
     pub fn lack(self) -> Option<String> {
         match self {
             Self::Solved(_) => None,

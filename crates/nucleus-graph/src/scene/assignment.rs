@@ -7,7 +7,7 @@ use std::str::FromStr;
 use super::edit::{Edit, EditError, NewValue, edit};
 use super::read::preset::read_preset;
 use super::syntax;
-use crate::attributes::{Attribute, Effect, Kind, NodeType};
+use crate::attributes::{Attribute, Kind, NodeType};
 use crate::diagnostic::{Diagnostic, Severity, nearest};
 use crate::graph::Graph;
 
@@ -178,19 +178,6 @@ impl Assignment {
             node: self.node.clone(),
             attribute: self.attribute.clone(),
             to: NewValue::Text(self.value.clone()),
-        }
-    }
-}
-
-/// Whether setting an attribute changes anything.
-impl Attribute {
-    /// `None` if it is solved, else why setting it has no effect.
-    pub fn lacks_effect(&self) -> Option<&'static str> {
-        match self.effect {
-            Effect::Solved(_) => None,
-            Effect::NotYet => Some("has no effect yet"),
-            Effect::Never => Some("has no effect: nothing uses it, not even in Maya"),
-            Effect::Elsewhere(reason) | Effect::Wiring(reason) => Some(reason),
         }
     }
 }

@@ -100,8 +100,8 @@ fn warn_without_effect(axis: &Axis, scene: &Scene) {
     let Some(id) = scene.graph.find(&axis.node) else { return };
     let node_type = scene.graph.node(id).node_type();
     let row: Option<&Attribute> = node_type.attribute(&axis.attribute);
-    if let Some(why) = row.and_then(Attribute::lacks_effect) {
-        say!("warning: `{}` {why}", axis.name());
+    if let Some(lack) = row.and_then(|row| row.effect.lack()) {
+        say!("warning: `{}` {lack}", axis.name());
     }
     if let Values::List(values) = &axis.values
         && values.iter().collect::<BTreeSet<_>>().len() < values.len()
