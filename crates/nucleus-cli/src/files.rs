@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use nucleus_cache::{ObjectKind, OpenError, Playback, ReadError, shell_word};
 use nucleus_graph::compile::{Program, compile};
 use nucleus_graph::first_frame_warnings;
@@ -210,9 +210,7 @@ pub fn with_remedy(error: anyhow::Error, path: &Path, option: &str) -> anyhow::E
 /// If the cache holds no frame, or the range exceeds the largest number.
 pub fn frames_of(range: FrameRange, cache: &Playback, path: &Path) -> Result<(i32, i32)> {
     let moments = cache.time_samples();
-    let (Some(begin), Some(end)) = (moments.first(), moments.last()) else {
-        bail!("the cache holds no frame")
-    };
+    let (begin, end) = moments.first().zip(moments.last()).context("the cache holds no frame")?;
     let (first, last) =
         range.within(begin.frame).context("the frame range exceeds the largest frame number, 2147483647")?;
     let overlaps = first <= end.frame && last >= begin.frame;

@@ -108,7 +108,6 @@ impl Export {
         let (format, out) = self.target()?;
         files::refuse_own_input(&self.file, &out)?;
         self.check_options(&cache)?;
-        ensure!(!cache.time_samples().is_empty(), "the cache holds no frame");
         let frames = self.frames.map(|frames| files::frames_of(frames, &cache, &self.file));
         let mut objects: Vec<String> = Vec::new();
         for pattern in &self.object {
