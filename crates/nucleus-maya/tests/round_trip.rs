@@ -83,7 +83,13 @@ fn set_any(graph: &mut Graph, node: NodeId, node_type: &'static NodeType, seed: 
     if row.name == "currentTime" || (row.name == "startFrame" && node_type != &nucleus::NUCLEUS) {
         return;
     }
-    if let Some(setting) = setting(row, seed).filter(|setting| setting.fits(row)) {
+    // Scenes refuse what has no mass and is to move.
+    let is_massless = |setting: &Setting| {
+        row.name == "pointMass"
+            && *setting == Setting::Fixed(Value::Float(0.0))
+            && node_type != &n_rigid::N_RIGID
+    };
+    if let Some(setting) = setting(row, seed).filter(|setting| setting.fits(row) && !is_massless(setting)) {
         graph.set(node, row, setting).unwrap();
     }
 }
